@@ -86,9 +86,9 @@ const std::vector<WarningKind>& warning_kinds() {
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
        "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
        "is so."},
-      {"trajectory.fix_step", "From one fix on all GNSS fixes are elsewhere by more than the IMU and their own scatter allow.",
+      {"trajectory.fix_step", "From one fix on all GNSS fixes are shifted by more than the IMU and their own scatter allow.",
        "Process the fixes again: another base station or frame, a wrong ambiguity, another antenna. The records do not show which of two "
-       "levels is right; sigmas beside the step allow for both."},
+       "levels is right; sigmas allow for both, but with correlated_share = 0."},
       {"trajectory.heading", "The heading is known to 0.2 deg or worse, and points beside the track with it.",
        "Turns, or changes of speed, before and after the lines show the heading to an IMU; where another source knows it, state "
        "trajectory.ins_gnss.alignment = \"given\" with its sigma, or use the processed trajectory."},

@@ -19,7 +19,7 @@ constexpr int max_component_rounds = 4;
 constexpr double settled = 1e-3;  // change of a weight, or of a factor relative to itself
 
 /// Robust weights from the residuals over their own sigmas; true where one changed. `redundancy`: per row, of the plain adjustment.
-/// The residual of a ray that has lost weight grows by 1 / (r + p (1 - r)), r its redundancy and p its weight, and tests the same: without
+/// The residual of a ray that has lost weight grows by 1 / (r + p (1 - r)), r its redundancy and p its weight; that is taken off. Without
 /// this factor two rays of a point, one of which yields, become a blunder from 3.5 sigmas on.
 bool reweigh(const LinearBlock& l, const std::vector<float>& redundancy, const BlockOptions& o, BlockWeights& weights) {
   constexpr float least = 0.05f;  // a residual with less says too little
@@ -96,6 +96,7 @@ std::set<std::uint32_t> parallel_points(const ImageBlock& block, const BlockInfe
   std::set<std::uint32_t> out(found.unsound_points.begin(), found.unsound_points.end());
   if (found.points.empty()) return out;
   for (const ImageRay& r : block.rays) {
+    if (block.points[r.point].left_out) continue;
     const double distance = (block.points[r.point].position - block.images[r.image].position).norm();
     if (std::sqrt(found.points[r.point].trace()) > most * distance) out.insert(r.point);
   }
@@ -106,7 +107,9 @@ std::set<std::uint32_t> parallel_points(const ImageBlock& block, const BlockInfe
 bool leave_out_parallel(ImageBlock& block, const BlockInference& found) {
   constexpr size_t one_in = 10;
   const std::set<std::uint32_t> points = parallel_points(block, found);
-  if (points.empty() || one_in * points.size() > block.points.size()) return false;
+  const auto before =
+      static_cast<size_t>(std::count_if(block.points.begin(), block.points.end(), [](const BlockPoint& p) { return p.left_out; }));
+  if (points.empty() || one_in * (before + points.size()) > block.points.size()) return false;
   for (const std::uint32_t p : points) block.points[p].left_out = true;
   return true;
 }
@@ -120,27 +123,25 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
   find_drift_sets(block);
   BlockSolution out;
   out.weights.of_ray.assign(block.rays.size(), 1.0);
-  BlockSystem stated(block, out.weights);
-  expect_determined(block, stated.linearise());
-  out.convergence = stated.solve();
-  LinearBlock linear = stated.linearise();
-  out.inference = infer(linear, out.weights.of_ray);
-  std::optional<BlockSystem> without_parallel;
-  if (leave_out_parallel(block, out.inference)) {
-    without_parallel.emplace(block, out.weights);
-    out.convergence = without_parallel->solve();
-    linear = without_parallel->linearise();
+  std::optional<BlockSystem> system(std::in_place, block, out.weights);
+  expect_determined(block, system->linearise());
+  LinearBlock linear;
+  for (;;) {
+    out.convergence = system->solve();
+    linear = system->linearise();
     out.inference = infer(linear, out.weights.of_ray);
+    if (!leave_out_parallel(block, out.inference)) break;
+    system.reset();
+    system.emplace(block, out.weights);
   }
   expect_sound(block, linear, out.inference);
-  BlockSystem& system = without_parallel ? *without_parallel : stated;
+  const std::vector<float> redundancy = out.inference.redundancy;
   for (int component_round = 0;; ++component_round) {
     bool changed = false;
-    const std::vector<float> redundancy = out.inference.redundancy;
     for (int round = 0; o.robust && round < max_rounds && reweigh(linear, redundancy, o, out.weights); ++round) {
-      system.weigh(out.weights);
-      out.convergence = system.solve();
-      linear = system.linearise();
+      system->weigh(out.weights);
+      out.convergence = system->solve();
+      linear = system->linearise();
       ++out.rounds;
       changed = true;
     }
@@ -149,9 +150,9 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
       expect_sound(block, linear, out.inference);
     }
     if (!o.components || component_round == max_component_rounds || !rescale(out.inference, o, out)) break;
-    system.weigh(out.weights);
-    out.convergence = system.solve();
-    linear = system.linearise();
+    system->weigh(out.weights);
+    out.convergence = system->solve();
+    linear = system->linearise();
     ++out.rounds;
   }
   if (!out.convergence.converged)

@@ -63,27 +63,28 @@ std::vector<Vector3d> directions_of(const ImageBlock& block) {
   return out;
 }
 
-/// Points by intersection, or where their rays cross the block's middle height if that is far from their own: the mean of the crossings.
+/// Points by intersection, or where it is far from the middle depth of an image's points, the mean of the places at that depth.
 void place_points(ImageBlock& block, const std::vector<Vector3d>& directions) {
   constexpr double near = 0.5;  // of the middle depth
   intersect_points(block);
-  std::vector<double> depths;
+  std::vector<std::vector<double>> depths(block.images.size());
+  const auto depth = [&](const ImageRay& r) { return block.images[r.image].position.z() - block.points[r.point].position.z(); };
   for (size_t r = 0; r < block.rays.size(); ++r)
-    if (!directions[r].isZero())
-      depths.push_back(block.images[block.rays[r].image].position.z() - block.points[block.rays[r].point].position.z());
-  const double middle = core::median(depths, 0.0);
-  if (!(middle > 0.0)) return;
+    if (!directions[r].isZero()) depths[block.rays[r].image].push_back(depth(block.rays[r]));
+  std::vector<double> middle;
+  for (std::vector<double>& d : depths) middle.push_back(core::median(std::move(d), 0.0));
   std::vector<Vector3d> sum(block.points.size(), Vector3d::Zero());
   std::vector<int> crossings(block.points.size(), 0);
   std::vector<char> far(block.points.size(), 0);
   for (size_t r = 0; r < block.rays.size(); ++r) {
-    if (directions[r].isZero()) continue;
+    const double usual = middle[block.rays[r].image];
+    if (directions[r].isZero() || !(usual > 0.0)) continue;
     const size_t p = block.rays[r].point;
     const BlockImage& image = block.images[block.rays[r].image];
     const Vector3d local = image.camera_R_local.transpose() * directions[r];
-    if (std::abs(image.position.z() - block.points[p].position.z() - middle) > near * middle) far[p] = 1;
+    if (std::abs(depth(block.rays[r]) - usual) > near * usual) far[p] = 1;
     if (!(local.z() < 0.0)) continue;
-    sum[p] += image.position - local * (middle / local.z());
+    sum[p] += image.position - local * (usual / local.z());
     ++crossings[p];
   }
   for (size_t p = 0; p < far.size(); ++p)

@@ -8,7 +8,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/distributions.h"
 #include "core/statistics.h"
@@ -71,36 +73,69 @@ class FixOutages {
   double usual_, last_ = -1e300;
 };
 
-FixStep step_of(const Problem& problem, const Hypothesis& h) {
-  const size_t fix = static_cast<size_t>(problem.nodes[h.node].fix);
-  const Matrix3d ned = ned_at(problem.gnss.position[fix]);
-  const Matrix3d covariance = ned.transpose() * h.step.N.inverse() * ned;
-  FixStep out;
-  out.fix = fix;
-  out.first = problem.nodes[h.node].time;
-  out.time = h.node > 0 ? 0.5 * (problem.nodes[h.node - 1].time + out.first) : out.first;
-  out.size = ned.transpose() * h.step.value();
-  out.sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  out.chi_square = h.step.chi_square();
-  return out;
+/// A hypothesis whose window is over.
+struct Judged {
+  FixStep step;
+  double alone = 0.0;  ///< chi-square of one wrong fix
+};
+
+/// The fix from which on the stated sigmas are others, if that is beside fix `k`: both change at once, and the test may find its neighbour.
+size_t with_quality(const core::GnssData& gnss, size_t k) {
+  constexpr size_t beside = 3;
+  constexpr double much = 4.0;  // times in the variance
+  for (size_t j = std::max<size_t>(1, k - std::min(k, beside)); j < std::min(gnss.size(), k + beside + 1); ++j) {
+    const double ratio = gnss.covariance[j].trace() / gnss.covariance[j - 1].trace();
+    if (ratio > much || ratio < 1.0 / much) return j;
+  }
+  return k;
 }
 
-/// Those that are sure, the most probable one of each minute: what it leaves in the innovations after it may look like another.
-std::vector<FixStep> chosen(const Problem& problem, std::vector<Hypothesis> all, double scale, double fixes) {
+Judged judged(const Problem& problem, const Hypothesis& h) {
+  const Node& node = problem.nodes[h.node];
+  const Matrix3d ned = ned_at(problem.gnss.position[static_cast<size_t>(node.fix)]);
+  const Matrix3d covariance = ned.transpose() * h.step.N.inverse() * ned;
+  FixStep step;
+  const size_t first = with_quality(problem.gnss, static_cast<size_t>(node.fix));
+  step.first = problem.gnss.time[first];
+  step.time = 0.5 * (problem.gnss.time[first - 1] + step.first);
+  step.size = ned.transpose() * h.step.value();
+  step.sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  step.chi_square = h.step.chi_square();
+  return {step, h.alone.chi_square()};
+}
+
+/// Those that are sure, the most probable one of each minute: what it leaves in the innovations after it may look like another. Squares of
+/// innovations are `scale` times what they should be.
+std::vector<FixStep> chosen(std::vector<Judged> all, double scale, double fixes) {
   const double sure = core::chi_square_limit(false_alarms / std::max(1.0, fixes), 3.0);
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.step.chi_square() > b.step.chi_square(); });
+  std::stable_sort(all.begin(), all.end(), [](const Judged& a, const Judged& b) { return a.step.chi_square > b.step.chi_square; });
   std::vector<FixStep> out;
-  for (const Hypothesis& h : all) {
-    const double chi_square = h.step.chi_square();
-    if (h.fixes < 2 || chi_square < sure * scale || chi_square - h.alone.chi_square() < decisive * scale) continue;
-    const FixStep step = step_of(problem, h);
+  for (Judged& j : all) {
+    FixStep& step = j.step;
+    if (step.chi_square < sure * scale || step.chi_square - j.alone < decisive * scale) continue;
+    step.sigma *= std::sqrt(scale);
+    step.chi_square /= scale;
     if (std::none_of(out.begin(), out.end(), [&](const FixStep& o) { return std::abs(o.first - step.first) < usual_interval; }))
       out.push_back(step);
   }
   return out;
 }
 
-/// Levels between steps, beside the one that most of the time has. Levels within three sigmas of one another are one.
+/// Median of the stated variances, north east down, m^2.
+Vector3d stated_between(const core::GnssData& gnss, double begin, double end) {
+  std::array<std::vector<double>, 3> variances;
+  for (size_t k = 0; k < gnss.size(); ++k) {
+    if (gnss.time[k] <= begin || gnss.time[k] > end) continue;
+    const Matrix3d ned = ned_at(gnss.position[k]);
+    const Vector3d v = (ned.transpose() * gnss.covariance[k] * ned).diagonal();
+    for (size_t i = 0; i < 3; ++i) variances[i].push_back(v[static_cast<Eigen::Index>(i)]);
+  }
+  Vector3d out;
+  for (size_t i = 0; i < 3; ++i) out[static_cast<Eigen::Index>(i)] = std::max(core::median(std::move(variances[i]), 1.0), 1e-12);
+  return out;
+}
+
+/// Levels between steps, beside the one that most of the time has. Levels within three sigmas of one another count as the same.
 void set_levels(const Problem& problem, std::vector<FixStep>& steps) {
   if (steps.empty()) return;
   struct Level {
@@ -128,17 +163,22 @@ void set_levels(const Problem& problem, std::vector<FixStep>& steps) {
   const Level* usual = &levels.front();
   for (const Level& level : levels)
     if (time_of(level) > time_of(*usual)) usual = &level;
-  const auto beside = [&](const Level& level) -> Vector3d {
-    return alike(level, *usual) ? Vector3d::Zero() : Vector3d(level.at - usual->at);
+  const auto found = [&](size_t i) {
+    const double begin = i > 0 ? steps[i - 1].time : -std::numeric_limits<double>::infinity();
+    const double end = i < steps.size() ? steps[i].time : std::numeric_limits<double>::infinity();
+    return FixLevel{alike(levels[i], *usual) ? Vector3d::Zero() : Vector3d(levels[i].at - usual->at),
+                    stated_between(problem.gnss, begin, end)};
   };
-  for (size_t i = 0; i < steps.size(); ++i) steps[i].before = beside(levels[i]), steps[i].after = beside(levels[i + 1]);
+  for (size_t i = 0; i < steps.size(); ++i) steps[i].before = found(i), steps[i].after = found(i + 1);
 }
 
 }  // namespace
 
 bool add_fix_steps(Problem& problem, InsFilter filter) {
   FixOutages outages(problem);
-  std::vector<Hypothesis> open, closed;
+  constexpr size_t max_open = 64;
+  std::vector<Hypothesis> open;
+  std::vector<Judged> closed;
   std::vector<double> nis;
   NodeRecord record;
   for (size_t k = 0; k < problem.nodes.size(); ++k) {
@@ -149,8 +189,9 @@ bool add_fix_steps(Problem& problem, InsFilter filter) {
     filter.update(k, &record, &outcome);
     for (Hypothesis& h : open) h.step.pass(record.transition), h.alone.pass(record.transition);
     if (fix) nis.push_back(outcome.nis);
-    const bool judged = fix && outages.none_before(node, outcome);
-    if (judged && outcome.nis > improbable) open.push_back({k, 0, Effect(problem.layout.size), Effect(problem.layout.size)});
+    const bool comparable = fix && outages.none_before(node, outcome);
+    if (comparable && outcome.nis > improbable && open.size() < max_open)
+      open.push_back({k, 0, Effect(problem.layout.size), Effect(problem.layout.size)});
     for (Hypothesis& h : open) {
       h.fixes += fix;
       for (size_t u = 0; u < record.updates.size(); ++u) {
@@ -161,14 +202,15 @@ bool add_fix_steps(Problem& problem, InsFilter filter) {
       }
     }
     const auto over = [&](const Hypothesis& h) { return h.fixes >= fewest_fixes && node.time - problem.nodes[h.node].time >= step_window; };
-    const auto done = std::stable_partition(open.begin(), open.end(), [&](const Hypothesis& h) { return !over(h); });
-    std::move(done, open.end(), std::back_inserter(closed));
-    open.erase(done, open.end());
+    for (const Hypothesis& h : open)
+      if (over(h) && h.step.chi_square() > improbable) closed.push_back(judged(problem, h));
+    std::erase_if(open, over);
   }
-  std::move(open.begin(), open.end(), std::back_inserter(closed));
+  for (const Hypothesis& h : open)
+    if (h.fixes >= 2) closed.push_back(judged(problem, h));
   const double expected = core::chi_square_limit(0.5, 3.0);
   const std::vector<FixStep> found =
-      chosen(problem, std::move(closed), std::max(1.0, core::median(nis, expected) / expected), static_cast<double>(nis.size()));
+      chosen(std::move(closed), std::max(1.0, core::median(nis, expected) / expected), static_cast<double>(nis.size()));
   std::vector<FixStep>& steps = problem.steps;
   const size_t known = steps.size();
   for (const FixStep& step : found)
@@ -176,7 +218,8 @@ bool add_fix_steps(Problem& problem, InsFilter filter) {
       steps.push_back(step);
   if (steps.size() == known) return false;
   std::sort(steps.begin(), steps.end(), [](const FixStep& a, const FixStep& b) { return a.first < b.first; });
-  const bool usual = static_cast<double>(steps.size()) * usual_interval < problem.nodes.back().time - problem.nodes.front().time;
+  const double lasts = problem.nodes.back().time - problem.nodes.front().time;
+  const bool usual = steps.size() <= 2 || static_cast<double>(steps.size()) * usual_interval < lasts;  // a shift of one line is two
   if (!usual) steps.clear();
   set_levels(problem, steps);
   return usual;

@@ -185,6 +185,13 @@ void refuse_contradicting(const std::vector<double>& weights) {
                       "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
 }
 
+/// The fixes' correlated error at the beginning or the end of the record, where these have another level than most of the time.
+void allow_for_level(const Problem& p, bool beginning, StateMatrix& stated) {
+  const int fix = p.layout.fix;
+  if (fix < 0 || p.steps.empty() || !(p.share > 0.0)) return;
+  stated.block<3, 3>(fix, fix).diagonal() += level_variance(p, beginning ? p.steps.front().before : p.steps.back().after);
+}
+
 /// All but the records, which their owner gives.
 SmoothedFlight left_by(const Problem& p, const SmootherRun& run, const Start& start) {
   SmoothedFlight out;
@@ -198,6 +205,7 @@ SmoothedFlight left_by(const Problem& p, const SmootherRun& run, const Start& st
   out.outcomes = run.outcomes;
   out.stated = start.estimate;
   out.covariance = widened(start.covariance, run.nodes.front().sigma, start.attitude_given);
+  allow_for_level(p, true, out.covariance);
   out.attitude_given = start.attitude_given;
   return out;
 }
@@ -231,6 +239,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
     StateMatrix stated = start.covariance;
     // At the other end nothing is stated of the attitude: 1 rad is more than any error.
     if (start.attitude_given && !attitude) stated.block<3, 3>(Layout::attitude, Layout::attitude).setIdentity();
+    allow_for_level(noise, &at == &run.nodes.front(), stated);
     return InsFilter(noise, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
                      &reference);
   };

@@ -19,13 +19,18 @@ struct Node {
   bool still = false;     ///< the body stands on the ground
 };
 
+/// The fixes' error between two steps.
+struct FixLevel {
+  Eigen::Vector3d beside = Eigen::Vector3d::Zero();  ///< distance from the level of most of the time, north east down, m
+  Eigen::Vector3d stated = Eigen::Vector3d::Ones();  ///< median of the variances stated for its fixes, m^2
+};
+
 /// A step of the fixes' error, from one level to another.
 struct FixStep {
-  size_t fix = 0;                                                ///< the first one after it
-  double time = 0.0, first = 0.0;                                ///< of the step, and of that fix; GPS time, s
+  double time = 0.0, first = 0.0;                                ///< of the step, and of the first fix after it; GPS time, s
   Eigen::Vector3d size = Eigen::Vector3d::Zero(), sigma = size;  ///< north east down, m
   double chi_square = 0.0;                                       ///< of three degrees of freedom
-  Eigen::Vector3d before = size, after = size;                   ///< levels beside that of most of the time, m
+  FixLevel before{}, after{};
 };
 
 /// What one GNSS fix did.
@@ -47,7 +52,7 @@ struct Problem {
   double variance = 1.0;         ///< factor on the fixes' stated covariances
   double roughness = 1.0;        ///< factor on the IMU's stated noise: what vibration adds
   double gate = 21.1;            ///< NIS of three degrees of freedom beyond which a fix is down-weighted
-  std::vector<FixStep> steps{};  ///< in the order of time; the fixes' correlated error is another one after each
+  std::vector<FixStep> steps{};  ///< in the order of time; each begins a correlated error of its own
   /// Called at every node that a pass comes to, for the progress.
   std::function<void()> at_node = [] {};
 };

@@ -154,7 +154,7 @@ FixesUsed judged_fixes(const InsFindings& f, const core::SmootherSeries& s, Warn
   return out;
 }
 
-/// The largest steps, each with its figures, and how many more there are.
+/// The most certain steps, each with its figures, and how many more there are.
 void judge_steps(const InsFindings& f, InsFigures& out) {
   constexpr size_t shown = 3;
   std::vector<FixStep> steps = f.problem.steps;
@@ -162,13 +162,11 @@ void judge_steps(const InsFindings& f, InsFigures& out) {
   std::stable_sort(steps.begin(), steps.end(), [](const FixStep& a, const FixStep& b) { return a.chi_square > b.chi_square; });
   for (size_t k = 0; k < std::min(shown, steps.size()); ++k) {
     const FixStep& s = steps[k];
-    out.named.push_back(
-        {"trajectory.fix_step", text("from the fix at %.3f s of GPS time on the fixes are elsewhere by %.3f m north, %.3f east, %.3f down",
-                                     s.first, s.size.x(), s.size.y(), s.size.z()) +
-                                    text(", %.1f sigmas", std::sqrt(s.chi_square)) +
-                                    (k + 1 == shown && steps.size() > shown
-                                         ? text("; %.0f more such steps are in the report", static_cast<double>(steps.size() - shown))
-                                         : "")});
+    std::string sentence = text("the fixes jump by %.3f m north, %.3f m east, %.3f m down", s.size.x(), s.size.y(), s.size.z()) +
+                           text(" at %.3f s of GPS time, %.1f sigmas", s.first, std::sqrt(s.chi_square));
+    if (k + 1 == shown && steps.size() > shown)
+      sentence += "; " + core::counted(steps.size() - shown, "more step is", "more steps are") + " in the report";
+    out.named.push_back({"trajectory.fix_step", std::move(sentence)});
   }
 }
 

@@ -30,18 +30,20 @@ StateMatrix Passage::noise() const {
   return out;
 }
 
-/// The fixes' correlated error among steps: each level's error is a draw of its own, with the level's distance from that of most of the
-/// time as its sigma beside what is stated. In units of the stated one.
+Vector3d level_variance(const Problem& problem, const FixLevel& level) {
+  return level.beside.cwiseAbs2().cwiseQuotient(problem.share * problem.variance * level.stated);
+}
+
+namespace {
+
+/// Between steps the fixes' correlated error has the sigma of its level in place of the stated one; at a step it is drawn anew.
 void pass_steps(const Problem& problem, double begin, double end, Passage& passage) {
   const auto after = std::lower_bound(problem.steps.begin(), problem.steps.end(), std::max(begin, end),
                                       [](const FixStep& s, double t) { return s.time < t; });
   const bool any_before = after != problem.steps.begin();
   const FixStep& step = any_before ? *(after - 1) : *after;
   const bool crossed = any_before && step.time > std::min(begin, end);
-  const Vector3d level = any_before && (!crossed || end > begin) ? step.after : step.before;
-  const Matrix3d ned = ned_at(problem.gnss.position[step.fix]);
-  const Vector3d stated = (ned.transpose() * problem.gnss.covariance[step.fix] * ned).diagonal().cwiseMax(1e-12);
-  const Vector3d more = level.cwiseAbs2().cwiseQuotient(problem.share * problem.variance * stated);
+  const Vector3d more = level_variance(problem, any_before && (!crossed || end > begin) ? step.after : step.before);
   const int fix = problem.layout.fix;
   if (crossed) {
     passage.transition.middleRows<3>(fix).setZero();
@@ -51,6 +53,8 @@ void pass_steps(const Problem& problem, double begin, double end, Passage& passa
     passage.gained.segment<3>(fix) += (1.0 - kept * kept) * more;
   }
 }
+
+}  // namespace
 
 Passage passage_to(const Problem& problem, const Estimate& from, ImuWalk& walk, double until) {
   Passage out;

@@ -21,6 +21,9 @@ struct Passage {
   StateMatrix noise() const;  ///< covariance that is added over the whole passage
 };
 
+/// What a level adds to the variance of the fixes' correlated error, in units of the stated one. The share must not be zero.
+Eigen::Vector3d level_variance(const Problem& problem, const FixLevel& level);
+
 /// Carries an estimate to another instant, on either side.
 Passage passage_to(const Problem& problem, const Estimate& from, ImuWalk& walk, double until);
 

@@ -57,11 +57,48 @@ TEST(FixSteps, SigmasBesideAStepAllowForIt) {
     run.change_gnss = shifted(99.9, 139.9, {0.0, 0.15, 0.0});
     const InsGnssResult r = run.on(lines_and_turns());
     EXPECT_EQ(r.report.figures.steps.size(), 2u);
-    EXPECT_NE(test::warning_with(r, "m north"), "");
+    EXPECT_NE(test::warning_with(r, "the fixes jump by"), "");
     within.add(r, lines_and_turns(), 100, 140);
   }
+  EXPECT_GT(std::sqrt(within.normed[1] / within.count), 0.5);
   EXPECT_LT(within.rms()[1], 0.04);
   EXPECT_LT(std::sqrt(within.normed[1] / within.count), 1.4);
+}
+
+TEST(FixSteps, TheFirstLevelMayBeTheUnusualOne) {
+  test::Statistics first;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Trial run = trial_of(ImuGrade::tactical, seed);
+    run.change_gnss = shifted(-1e9, 59.9, {0.0, 0.15, 0.0});
+    const InsGnssResult r = run.on(lines_and_turns());
+    EXPECT_EQ(r.report.figures.steps.size(), 1u);
+    first.add(r, lines_and_turns(), 0, 60);
+  }
+  EXPECT_LT(std::sqrt(first.normed[1] / first.count), 1.4);
+  EXPECT_GT(std::sqrt(first.normed[1] / first.count), 0.4);
+}
+
+TEST(FixSteps, AllowancesAreThoseOfTheLevelsOwnFixes) {
+  // Fixes of 2.5 cm that become fixes of 25 cm with a shift of 1 m: the usual level is the second, and the first is allowed its metre.
+  test::Statistics first;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Trial run = trial_of(ImuGrade::tactical, seed);
+    run.change_gnss = [&](core::GnssData& g) {
+      test::Dice dice(seed + 50);
+      for (size_t k = 0; k < g.size(); ++k) {
+        if (g.time[k] < motion_start + 79.9) {
+          g.position[k] += ned_at(g.position[k]) * Vector3d(0.0, 1.0, 0.0);
+          continue;
+        }
+        g.position[k] += 0.25 * dice.vector();
+        g.covariance[k] += 0.0625 * Eigen::Matrix3d::Identity();
+      }
+    };
+    const InsGnssResult r = run.on(lines_and_turns());
+    EXPECT_EQ(r.report.figures.steps.size(), 1u);
+    first.add(r, lines_and_turns(), 0, 80);
+  }
+  EXPECT_LT(std::sqrt(first.normed[1] / first.count), 2.0);
 }
 
 }  // namespace
