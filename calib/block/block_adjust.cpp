@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "calib/adjust/robust_weight.h"
 #include "calib/block/block_diagnosis.h"
+#include "calib/block/unfit_points.h"
 #include "core/error.h"
 #include "core/statistics.h"
 
@@ -88,30 +88,6 @@ void expect_determined(const ImageBlock& block, const LinearBlock& start) {
 
 void expect_sound(const ImageBlock& block, const LinearBlock& linear, const BlockInference& found) {
   if (!found.determined() || !found.unsound_points.empty()) refuse_undetermined(block, linear, found.unsound_points);
-}
-
-/// Points whose rays are parallel, or whose position has a standard deviation of more than a third of the distance.
-std::set<std::uint32_t> parallel_points(const ImageBlock& block, const BlockInference& found) {
-  constexpr double most = 1.0 / 3.0;
-  std::set<std::uint32_t> out(found.unsound_points.begin(), found.unsound_points.end());
-  if (found.points.empty()) return out;
-  for (const ImageRay& r : block.rays) {
-    if (block.points[r.point].left_out) continue;
-    const double distance = (block.points[r.point].position - block.images[r.image].position).norm();
-    if (std::sqrt(found.points[r.point].trace()) > most * distance) out.insert(r.point);
-  }
-  return out;
-}
-
-/// These take no part, if they are few: a block has thousands of tie points, and its user need not edit their file.
-bool leave_out_parallel(ImageBlock& block, const BlockInference& found) {
-  constexpr size_t one_in = 10;
-  const std::set<std::uint32_t> points = parallel_points(block, found);
-  const auto before =
-      static_cast<size_t>(std::count_if(block.points.begin(), block.points.end(), [](const BlockPoint& p) { return p.left_out; }));
-  if (points.empty() || one_in * (before + points.size()) > block.points.size()) return false;
-  for (const std::uint32_t p : points) block.points[p].left_out = true;
-  return true;
 }
 
 }  // namespace

@@ -63,10 +63,32 @@ std::vector<Vector3d> directions_of(const ImageBlock& block) {
   return out;
 }
 
+/// intersect_points() with the directions of all rays.
+size_t intersect(ImageBlock& block, const std::vector<Vector3d>& directions) {
+  std::vector<RayIntersection> sums(block.points.size());
+  for (size_t r = 0; r < block.rays.size(); ++r) {
+    const BlockImage& image = block.images[block.rays[r].image];
+    if (!directions[r].isZero())
+      sums[block.rays[r].point].add(image.position, (image.camera_R_local.transpose() * directions[r]).normalized());
+  }
+  size_t parallel = 0;
+  for (size_t p = 0; p < sums.size(); ++p) {
+    if (sums[p].rays() < 2) continue;
+    if (const auto point = sums[p].point())
+      block.points[p].position = *point;
+    else
+      ++parallel;
+  }
+  for (const BlockControl& c : block.control)
+    for (int k = 0; k < 3; ++k)
+      if (!c.check && c.known[static_cast<size_t>(k)]) block.points[c.point].position[k] = c.position[k];
+  return parallel;
+}
+
 /// Points by intersection, or where it is far from the middle depth of an image's points, the mean of the places at that depth.
 void place_points(ImageBlock& block, const std::vector<Vector3d>& directions) {
   constexpr double near = 0.5;  // of the middle depth
-  intersect_points(block);
+  intersect(block, directions);
   std::vector<std::vector<double>> depths(block.images.size());
   const auto depth = [&](const ImageRay& r) { return block.images[r.image].position.z() - block.points[r.point].position.z(); };
   for (size_t r = 0; r < block.rays.size(); ++r)
@@ -178,26 +200,6 @@ std::optional<Vector3d> RayIntersection::point() const {
   return ldlt.solve(b_);
 }
 
-size_t intersect_points(ImageBlock& block) {
-  std::vector<RayIntersection> sums(block.points.size());
-  const std::vector<Vector3d> directions = directions_of(block);
-  for (size_t r = 0; r < block.rays.size(); ++r) {
-    const BlockImage& image = block.images[block.rays[r].image];
-    if (!directions[r].isZero())
-      sums[block.rays[r].point].add(image.position, (image.camera_R_local.transpose() * directions[r]).normalized());
-  }
-  size_t parallel = 0;
-  for (size_t p = 0; p < sums.size(); ++p) {
-    if (sums[p].rays() < 2) continue;
-    if (const auto point = sums[p].point())
-      block.points[p].position = *point;
-    else
-      ++parallel;
-  }
-  for (const BlockControl& c : block.control)
-    for (int k = 0; k < 3; ++k)
-      if (!c.check && c.known[static_cast<size_t>(k)]) block.points[c.point].position[k] = c.position[k];
-  return parallel;
-}
+size_t intersect_points(ImageBlock& block) { return intersect(block, directions_of(block)); }
 
 }  // namespace swath::calib

@@ -14,7 +14,6 @@ namespace swath::calib {
 namespace {
 
 constexpr double far_off = 5.0, cut = 20.0;           // sigmas
-constexpr double finest = 0.03;                       // m: ground itself differs by this from pass to pass
 constexpr double lowest_land = -480.0;                // m, ellipsoidal: the shore of the Dead Sea
 constexpr double highest_land = 9000.0;               // m
 constexpr double least_down = 0.5;                    // share of returns below the aircraft: gorges and streets have walls
@@ -67,9 +66,8 @@ void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& ou
   }
 }
 
-/// Root of the square of the median and of the squared robust scatter about it: the RMS of noise, of an offset, and of both.
-double robust_rms(std::vector<double> d) {
-  const double middle = core::median(d, 0.0);
+/// Root of the squares of the median `middle` and of the robust scatter about it: the RMS of noise, of an offset, and of both.
+double robust_rms(std::vector<double> d, double middle) {
   for (double& x : d) x = std::abs(x - middle);
   return std::hypot(middle, core::mad_to_sigma * core::median(std::move(d), 0.0));
 }
@@ -107,7 +105,7 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
     p.line_a = f.plan.passes[p.pass_a].line, p.line_b = f.plan.passes[p.pass_b].line;
     p.predicted =
         predicted > 0 ? predicted : predicted_difference(shared, *shots[p.pass_a], *shots[p.pass_b], geometry, f.sensor, t, f.frame);
-    const double sigma = std::max(p.predicted, finest);
+    const double sigma = std::max(p.predicted, finest_difference);
     p.water = take_out_water(shared, sigma).value_or(0.0);
     p.cells = shared.size();
     std::vector<double> d;
@@ -122,7 +120,7 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
     outside += off;
     p.outside = off / count;
     p.median = core::median(d, 0.0);
-    p.rms = robust_rms(std::move(d));
+    p.rms = robust_rms(std::move(d), p.median);
     n += count;
     expected += count * p.predicted * p.predicted;
     robust += count * p.rms * p.rms;

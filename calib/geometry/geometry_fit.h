@@ -19,6 +19,9 @@
 
 namespace swath::calib {
 
+/// m: ground itself differs by this from pass to pass.
+inline constexpr double finest_difference = 0.03;
+
 /// How the lines fit together.
 struct Fit {
   std::uint64_t cells = 0;

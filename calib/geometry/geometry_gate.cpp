@@ -20,7 +20,6 @@
 namespace swath::calib {
 namespace {
 
-constexpr double least_sigma = 0.03;    // m, as in geometry_fit.cpp: ground differs by this from pass to pass
 constexpr double far_better = 0.5;      // of the cost as described
 constexpr double as_good = 1.12;        // of the best cost: the same
 constexpr double fewer_cells = 0.1;     // of the largest number of cells that any assumption gives
@@ -55,7 +54,7 @@ std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t le
   const size_t now = not_held(found.checks);
   size_t fewest = now;
   // Lines that fit must fit as their sigmas say.
-  const double sigma = std::max(found.lines.predicted, least_sigma);
+  const double sigma = std::max(found.lines.predicted, finest_difference);
   const auto fits = [&](const Fit& f) {
     return found.lines.predicted > 0 ? f.cost < near_predicted * sigma && f.outside < few_outside : f.rms < 0.3;
   };
@@ -187,7 +186,7 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
 /// Clear differences of the lines are brought down by far, or to about what is predicted. Smaller ones are what the sigmas allow: only
 /// where those are small does their pattern show a mistake, which brings them down as well.
 bool explains_lines(const Fit& with, const GeometryFigures& g, double tolerance) {
-  const double sigma = std::max(g.lines.predicted, least_sigma), now = g.lines.fit.rms;
+  const double sigma = std::max(g.lines.predicted, finest_difference), now = g.lines.fit.rms;
   if (now > clearly_off * sigma) return with.rms < std::max(far_better * now, as_predicted * sigma);
   return sigma < tolerance && with.cost < less_left * g.lines.fit.cost;
 }

@@ -169,7 +169,8 @@ void set_levels(const Problem& problem, std::vector<FixStep>& steps) {
     return FixLevel{alike(levels[i], *usual) ? Vector3d::Zero() : Vector3d(levels[i].at - usual->at),
                     stated_between(problem.gnss, begin, end)};
   };
-  for (size_t i = 0; i < steps.size(); ++i) steps[i].before = found(i), steps[i].after = found(i + 1);
+  FixLevel before = found(0);
+  for (size_t i = 0; i < steps.size(); ++i) steps[i].before = before, steps[i].after = before = found(i + 1);
 }
 
 }  // namespace

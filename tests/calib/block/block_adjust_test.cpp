@@ -372,32 +372,6 @@ TEST(BlockAdjust, ARayThatYieldsDoesNotMakeTheOthersABlunder) {
   }
 }
 
-TEST(BlockAdjust, PointsOfParallelRaysAreLeftOut) {
-  test::Making m;
-  m.attitudes = true;
-  const test::MadeBlock made = test::make_block(m);
-  ImageBlock alone = made.given, doubled = made.given;
-  const BlockSolution without = adjust_block(alone, plain_least_squares());
-  // An exposure made twice from one place, and a point that these two images alone see.
-  const auto second = static_cast<std::uint32_t>(doubled.images.size());
-  const auto point = static_cast<std::uint32_t>(doubled.points.size());
-  doubled.images.push_back(doubled.images[0]);
-  doubled.images.back().name = "twice";
-  doubled.points.push_back({"far", doubled.points[0].position});
-  for (const ImageRay& r : made.given.rays)
-    if (r.image == 0) doubled.rays.push_back({second, r.point, r.x, r.y, r.sigma});
-  for (const std::uint32_t image : {0u, second}) doubled.rays.push_back({image, point, 10.0, -20.0, 0.01});
-  for (const ImageAttitude& a : made.given.attitudes)
-    if (a.image == 0) doubled.attitudes.push_back({second, a.local_R_body, a.covariance});
-  const BlockSolution with = adjust_block(doubled, plain_least_squares());
-  for (std::uint32_t p = 0; p < doubled.points.size(); ++p) EXPECT_EQ(doubled.points[p].left_out, p == point);
-  EXPECT_EQ(with.points_left_out, without.points_left_out + 1);
-  for (std::uint32_t p = 0; p < point; ++p)
-    if (with.linear.point_column[p] >= 0) {
-      EXPECT_LT((doubled.points[p].position - alone.points[p].position).norm(), 2.0);
-    }
-}
-
 TEST(BlockAdjust, WhatIsMissingIsNamed) {
   test::MadeBlock b = test::make_block({});
   b.given.images[3].name = "P4";
