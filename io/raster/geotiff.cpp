@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cloud optimised GeoTIFF as described in OGC 21-026, through GDAL's COG driver; GeoTIFF keys as OGC 19-008r4 (compound CRS: 1.1).
-// The driver takes a whole dataset, so the grid is shown to it as a MEM dataset on a copy with north-first rows and numeric nodata.
+// Grids are shown to its driver as a MEM dataset (io/raster/cog.h) on a copy with north-first rows and numeric nodata.
 #include "io/raster/geotiff.h"
 
 #include <cpl_string.h>
@@ -13,7 +13,7 @@
 
 #include "core/config/units.h"
 #include "core/error.h"
-#include "io/text/output_file.h"
+#include "io/raster/cog.h"
 #include "io/vector/gdal_door.h"
 
 namespace swath::io {
@@ -25,41 +25,6 @@ constexpr double lattice_tolerance = 1e-3;
 constexpr double square_tolerance = 1e-6;
 // Number of a cell: beyond it a corner could not be distinguished from its neighbour's in a double.
 constexpr double farthest_cell = 1e12;
-/// What a truncated file cannot pass: every block lies within the file. Only libraries' final flush could lose data unseen.
-void check_blocks(const std::filesystem::path& file, const std::filesystem::path& final_name, const GdalMessages& messages) {
-  const Dataset made(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-  if (!made) messages.fail_writing(final_name);
-  const auto size = std::filesystem::file_size(file);
-  GDALRasterBand* band = made->GetRasterBand(1);
-  int bx = 0, by = 0;
-  band->GetBlockSize(&bx, &by);
-  for (int j = 0; j * by < made->GetRasterYSize(); ++j)
-    for (int i = 0; i * bx < made->GetRasterXSize(); ++i) {
-      const std::string at = std::to_string(i) + "_" + std::to_string(j);
-      const char* offset = band->GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
-      const char* length = band->GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
-      if (!offset || !length || std::stoull(offset) + std::stoull(length) > size)
-        messages.fail_writing(final_name, "the file was cut short");
-    }
-}
-
-void set_crs(GDALDataset& d, const CrsFacts& facts) {
-  if (facts.empty) return;
-  OGRSpatialReference srs;
-  // GDAL writes no GeoTIFF keys at all for a projection with three axes.
-  const bool flat = facts.ellipsoidal && !facts.geographic;
-  srs.SetFromUserInput(flat ? facts.horizontal_wkt.c_str() : facts.wkt.c_str());
-  if (flat) d.SetMetadataItem(height_system_item, facts.vertical_name.c_str());
-  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  d.SetSpatialRef(&srs);
-}
-
-std::string pointer_text(const void* p) {
-  char text[64] = {};
-  CPLPrintPointer(text, const_cast<void*>(p), sizeof text - 1);
-  return text;
-}
-
 /// A band's values with rows from the north and raster_nodata for NaN.
 std::vector<float> north_first(const core::Lattice& l, const std::vector<float>& values) {
   std::vector<float> out(l.size());
@@ -69,6 +34,35 @@ std::vector<float> north_first(const core::Lattice& l, const std::vector<float>&
       out[l.at(i, l.ny - 1 - j)] = std::isfinite(v) ? v : static_cast<float>(raster_nodata);
     }
   return out;
+}
+
+/// Colours and what covers them as bands of T, 8 of 16 bits of each colour where T has 8.
+template <class T>
+void write_colours_as(const std::filesystem::path& file, const core::Lattice& l, const ColourBands& colours, GDALDataset& memory,
+                      const GdalMessages& messages) {
+  struct Named {
+    const char* name;
+    const std::vector<std::uint16_t>* values;
+    GDALColorInterp colour;
+  };
+  const Named bands[]{{"red", colours.red, GCI_RedBand}, {"green", colours.green, GCI_GreenBand}, {"blue", colours.blue, GCI_BlueBand}};
+  constexpr int shift = 16 - 8 * static_cast<int>(sizeof(T));
+  std::vector<std::vector<T>> rows(4, std::vector<T>(l.size()));
+  for (size_t b = 0; b < 4; ++b)
+    for (int j = 0; j < l.ny; ++j)
+      for (int i = 0; i < l.nx; ++i) {
+        T& to = rows[b][l.at(i, l.ny - 1 - j)];
+        const size_t at = l.at(i, j);
+        if (b < 3)
+          to = static_cast<T>((*bands[b].values)[at] >> shift);
+        else
+          to = (*colours.is_there)[at] ? std::numeric_limits<T>::max() : T{0};
+      }
+  for (size_t b = 0; b < 4; ++b) {
+    add_memory_band(memory, rows[b], b < 3 ? bands[b].name : "alpha");
+    memory.GetRasterBand(static_cast<int>(b) + 1)->SetColorInterpretation(b < 3 ? bands[b].colour : GCI_AlphaBand);
+  }
+  write_cog(file, memory, Overviews::average, messages);
 }
 
 Dataset open(const std::filesystem::path& file, const GdalMessages& messages) {
@@ -128,47 +122,28 @@ void write_raster(const std::filesystem::path& file, const core::Lattice& lattic
     if (!b.values || b.values->size() != lattice.size())
       throw core::Error("band '" + b.name + "' does not hold one value per cell", file.string());
 
-  const CrsFacts facts = crs_facts(crs);
-  OutputFile out(file);
   const GdalMessages messages;
-  GDALDriverManager& drivers = *GetGDALDriverManager();
+  const Dataset memory = memory_raster(lattice, crs_facts(crs), file);
   std::vector<std::vector<float>> rows;
-  const Dataset memory(drivers.GetDriverByName("MEM")->Create("", lattice.nx, lattice.ny, 0, GDT_Float32, nullptr));
-  std::array<double, 6> geotransform{lattice.west(), lattice.cell, 0, lattice.north(), 0, -lattice.cell};
-  memory->SetGeoTransform(geotransform.data());
-  set_crs(*memory, facts);
-  memory->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  rows.reserve(bands.size());
   for (const RasterBand& b : bands) {
     rows.push_back(north_first(lattice, *b.values));
-    CPLStringList options;
-    options.SetNameValue("DATAPOINTER", pointer_text(rows.back().data()).c_str());
-    memory->AddBand(GDT_Float32, options.List());
+    add_memory_band(*memory, rows.back(), b.name);
     GDALRasterBand* band = memory->GetRasterBand(memory->GetRasterCount());
-    band->SetDescription(b.name.c_str());
     if (!b.unit.empty()) band->SetUnitType(b.unit.c_str());
     band->SetNoDataValue(raster_nodata);
   }
-  const char* const options[] = {"COMPRESS=DEFLATE",
-                                 "PREDICTOR=YES",
-                                 "OVERVIEW_COMPRESS=DEFLATE",
-                                 "OVERVIEW_PREDICTOR=YES",
-                                 "LEVEL=6",
-                                 "BLOCKSIZE=512",
-                                 "NUM_THREADS=1",
-                                 "BIGTIFF=IF_SAFER",
-                                 average ? "OVERVIEW_RESAMPLING=AVERAGE" : "OVERVIEW_RESAMPLING=NEAREST",
-                                 nullptr};
-  const GdalSetting no_side_files("GDAL_PAM_ENABLED", "NO");
-  const GdalSetting one_thread("GDAL_NUM_THREADS", "1");
-  GDALDriver* cog = drivers.GetDriverByName("COG");
-  if (!cog) throw core::Error("this GDAL has no COG driver", file.string(), "GDAL 3.1 or later is needed");
-  {
-    const Dataset made(cog->CreateCopy(out.temporary().c_str(), memory.get(), false, const_cast<char**>(options), nullptr, nullptr));
-    if (!made) messages.fail_writing(file);
-  }
-  messages.check_written(file);
-  check_blocks(out.temporary(), file, messages);
-  out.commit();
+  write_cog(file, *memory, average ? Overviews::average : Overviews::nearest, messages);
+}
+
+void write_colours(const std::filesystem::path& file, const core::Lattice& lattice, const ColourBands& colours, int bits,
+                   const std::string& crs) {
+  const GdalMessages messages;
+  const Dataset memory = memory_raster(lattice, crs_facts(crs), file);
+  if (bits == 8)
+    write_colours_as<std::uint8_t>(file, lattice, colours, *memory, messages);
+  else
+    write_colours_as<std::uint16_t>(file, lattice, colours, *memory, messages);
 }
 
 void write_grid(const std::filesystem::path& file, const core::Grid& grid, const std::string& crs, GridBands bands) {

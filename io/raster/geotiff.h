@@ -13,9 +13,6 @@
 
 namespace swath::io {
 
-/// Metadata of a raster whose heights are ellipsoidal above a projection: GeoTIFF keys do not say it.
-inline constexpr const char* height_system_item = "HEIGHT_SYSTEM";
-
 /// Stands for "no value" in every raster written. A number, not NaN: all GIS take it, some (Surfer, older ArcGIS, SAGA) not NaN.
 constexpr double raster_nodata = -9999.0;
 
@@ -48,6 +45,16 @@ struct RasterBand {
 /// The same for any columns on a lattice (surface models, point density, ...); `average`: overviews by averaging, otherwise nearest.
 void write_raster(const std::filesystem::path& file, const core::Lattice& lattice, const std::vector<RasterBand>& bands,
                   const std::string& crs, bool average);
+
+/// Colours on a lattice, row-major from the south-west, over 16 bits; `is_there`: 0 where a cell has none.
+struct ColourBands {
+  const std::vector<std::uint16_t>*red = nullptr, *green = nullptr, *blue = nullptr;
+  const std::vector<std::uint8_t>* is_there = nullptr;
+};
+
+/// Writes an image of the map as COG: bands red, green, blue of `bits` (8 or 16) bits and alpha. Throws core::Error as write_grid().
+void write_colours(const std::filesystem::path& file, const core::Lattice& lattice, const ColourBands& colours, int bits,
+                   const std::string& crs);
 
 /// One band of a raster as the file holds it.
 struct Raster {

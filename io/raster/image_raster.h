@@ -23,6 +23,17 @@ struct ImageRaster {
 /// palette lies no colour.
 ImageRaster read_image_raster(const std::filesystem::path& file);
 
+/// Part of a photograph, in pixels from its upper left one.
+struct ImageWindow {
+  int column = 0, row = 0, columns = 0, rows = 0;
+};
+
+/// The part of it within the window, which lies in it. Throws core::Error as read_image_raster().
+ImageRaster read_image_window(const std::filesystem::path& file, const ImageWindow& window);
+
+/// Columns, rows, bands and bits, without values. Throws core::Error as read_image_raster().
+ImageRaster read_image_facts(const std::filesystem::path& file);
+
 /// Writes a tiled TIFF without loss. Throws core::Error.
 void write_image_raster(const std::filesystem::path& file, const ImageRaster& image);
 

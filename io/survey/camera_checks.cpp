@@ -38,11 +38,12 @@ class CameraChecks {
         exists(resolve(survey_, f.file), key);
     }
     for (size_t i = 0; i < survey_.image_points.size(); ++i) points(survey_.image_points[i], numbered("image_points", i));
+    for (size_t i = 0; i < survey_.photos.size(); ++i) photos(survey_.photos[i], numbered("photos", i));
     if (survey_.cameras.empty()) {
       if (!survey_.images.empty()) fault("image", "images are listed, and the survey has no [[camera]]", "describe the camera");
       if (!survey_.image_points.empty())
         fault("image_points", "image points are listed, and the survey has no [[camera]]", "describe the camera");
-    } else if (survey_.events.empty()) {
+    } else if (survey_.events.empty() && survey_.photos.empty()) {
       fault("camera", "a camera is described, and no [[event]] file has its exposures", "name the file of its exposures");
     }
   }
@@ -56,6 +57,16 @@ class CameraChecks {
     std::error_code ec;
     if (!std::filesystem::is_regular_file(path, ec))
       fault(key, "no such file: " + path.string(), "names are relative to the folder of the survey file");
+  }
+
+  void photos(const PhotoFiles& f, const std::string& key) {
+    std::error_code ec;
+    if (f.folder.empty())
+      fault(key + ".folder", "no folder of photographs is named");
+    else if (const auto folder = resolve(survey_, f.folder); !std::filesystem::is_directory(folder, ec))
+      fault(key + ".folder", "no such folder: " + folder.string(), "names are relative to the folder of the survey file");
+    if (!f.orientation.empty()) exists(resolve(survey_, f.orientation), key + ".orientation");
+    if (!f.camera.empty()) exists(resolve(survey_, f.camera), key + ".camera");
   }
 
   void camera(size_t i) {

@@ -19,6 +19,7 @@
 #include "io/gnss/rtklib_pos.h"
 #include "io/las/describe_las.h"
 #include "io/las/other_cloud.h"
+#include "io/raster/cog.h"
 #include "io/raster/geotiff.h"
 #include "io/records/describe_events.h"
 #include "io/records/describe_pcap.h"

@@ -15,6 +15,7 @@
 #include "io/survey/camera_file.h"
 #include "io/survey/control_file.h"
 #include "io/survey/navigation.h"
+#include "io/survey/photo_files.h"
 #include "io/survey/time_tags.h"
 
 namespace swath::core {
@@ -235,6 +236,7 @@ struct Survey {
   std::vector<SurveyCamera> cameras;
   std::vector<ImageListFile> images;
   std::vector<ImageFile> image_points;
+  std::vector<PhotoFiles> photos;
   std::vector<ControlFile> control;
   std::vector<BreaklineFile> breaklines;
   std::optional<std::filesystem::path> hangar;
@@ -273,6 +275,7 @@ void describe(Survey& s, V& v) {
   v.tables("camera", s.cameras, "Cameras whose exposures are events.");
   v.tables("image", s.images, "Tables of images: their names, and which event each one is.");
   v.tables("image_points", s.image_points, "Points measured on images.");
+  v.tables("photos", s.photos, "Photographs whose orientation is known, or comes from the run: for colours and orthophotos.");
   v.tables("control", s.control, "Surveyed points and targets.");
   v.tables("breaklines", s.breaklines, "Breaklines, boundaries and water lines of the terrain.");
   v.option("hangar", s.hangar, "Measurements in a hangar for the lever arms (docs/lever-arm.md); may be the survey's only entry.");

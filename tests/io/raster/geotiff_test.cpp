@@ -312,5 +312,31 @@ TEST(GeoTiff, AnAsciiGridThatIsCutShortIsRefusedAtOnce) {
   EXPECT_THROW(read_grid(folder / "cut.vrt", south), core::Error);
 }
 
+TEST(Geotiff, ColoursOf8And16BitsAndWhereThereAreNone) {
+  const test::TemporaryFolder folder;
+  const core::Lattice lattice{0.25, 8, 12, 3, 2};
+  const std::vector<std::uint16_t> red{256, 512, 65535, 1, 0, 300}, green(6, 5120), blue(6, 0);
+  const std::vector<std::uint8_t> is_there{1, 1, 1, 0, 1, 1};
+  for (const int bits : {8, 16}) {
+    write_colours(folder.path() / "a.tif", lattice, {&red, &green, &blue, &is_there}, bits, "EPSG:25832");
+    const RasterInfo info = read_raster_info(folder.path() / "a.tif");
+    EXPECT_EQ(info.names, (std::vector<std::string>{"red", "green", "blue", "alpha"}));
+    EXPECT_EQ(info.types, std::vector<std::string>(4, bits == 8 ? "Byte" : "UInt16"));
+    EXPECT_EQ(lattice_of(info, "a.tif"), lattice);
+    const GdalMessages messages;
+    const Dataset d = open_raster(folder.path() / "a.tif");
+    ASSERT_TRUE(d);
+    EXPECT_EQ(d->GetRasterBand(4)->GetColorInterpretation(), GCI_AlphaBand);
+    const auto values_of = [&](int band) {
+      std::vector<std::uint16_t> out(6);  // from the north
+      EXPECT_EQ(d->GetRasterBand(band)->RasterIO(GF_Read, 0, 0, 3, 2, out.data(), 3, 2, GDT_UInt16, 0, 0, nullptr), CE_None);
+      return out;
+    };
+    using Values = std::vector<std::uint16_t>;
+    EXPECT_EQ(values_of(1), bits == 8 ? (Values{0, 0, 1, 1, 2, 255}) : (Values{1, 0, 300, 256, 512, 65535}));
+    EXPECT_EQ(values_of(4), bits == 8 ? (Values{0, 255, 255, 255, 255, 255}) : (Values{0, 65535, 65535, 65535, 65535, 65535}));
+  }
+}
+
 }  // namespace
 }  // namespace swath::io

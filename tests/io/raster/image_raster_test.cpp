@@ -27,6 +27,26 @@ TEST(ImageRaster, WhatIsWrittenReadsBack) {
   }
 }
 
+TEST(ImageRaster, AWindowAndTheFactsAlone) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "a.tif";
+  ImageRaster image{37, 21, 3, 16, {}};
+  for (size_t k = 0; k < image.at(0, image.rows); ++k) image.values.push_back(static_cast<std::uint16_t>(k));
+  write_image_raster(file, image);
+  const ImageRaster part = read_image_window(file, {30, 10, 7, 4});
+  EXPECT_EQ(part.columns, 7);
+  EXPECT_EQ(part.rows, 4);
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 7; ++c) EXPECT_EQ(part.values[part.at(c, r)], image.values[image.at(30 + c, 10 + r)]);
+  EXPECT_THROW(read_image_window(file, {31, 10, 7, 4}), core::Error);
+  const ImageRaster facts = read_image_facts(file);
+  EXPECT_EQ(facts.columns, 37);
+  EXPECT_EQ(facts.rows, 21);
+  EXPECT_EQ(facts.bands, 3);
+  EXPECT_EQ(facts.bits, 16);
+  EXPECT_TRUE(facts.values.empty());
+}
+
 TEST(ImageRaster, WhatIsNoImage) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder.path() / "b.jpg", "no image");
