@@ -11,7 +11,7 @@
 namespace swath::simulate {
 
 struct CameraOptions {
-  bool file = false;
+  bool file = false, photos = false;
   core::Metres f{0.05021}, x0{0.000021}, y0{-0.000034}, nominal_f{0.05};
   double k1 = -2.1e-5, k2 = 1.2e-8, k3 = 0.0, p1 = 3e-6, p2 = -4e-6;
   int columns = 7216, rows = 5412;
@@ -35,6 +35,7 @@ struct CameraOptions {
 template <class V>
 void describe(CameraOptions& c, V& v) {
   v.option("file", c.file, "Writes image points, control, their tables of survey.toml, block.toml; exposures are the events.");
+  v.option("photos", c.photos, "Writes the photographs, too: photos/, a ray for each pixel; take few columns and rows.");
   v.option("f", c.f, core::above(0), "Principal distance.");
   v.option("nominal_f", c.nominal_f, core::above(0), "Principal distance that block.toml starts from.");
   v.option("x0", c.x0, "Principal point from the middle of the sensor, to the right.");

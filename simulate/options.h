@@ -225,6 +225,7 @@ void describe(Options& o, V& v) {
   v.check(o.flight.along.empty() || !o.output.laser, "a flight along a trajectory has no laser: set output.laser = false");
   v.check(o.output.trajectory != TrajectoryOutput::none || (o.imu.file && o.gnss.file),
           "without a trajectory the survey needs imu.file and gnss.file");
+  v.check(!o.camera.photos || o.camera.file, "camera.photos needs camera.file = true");
   v.check(!o.camera.file || (o.events.file && o.flight.along.empty()), "camera.file needs events.file = true and a flight along lines");
   bool las = false;
   for (Format f : o.output.formats) las = las || f == Format::las || f == Format::laz;

@@ -9,6 +9,7 @@
 
 #include "core/block.h"
 #include "simulate/scan.h"
+#include "simulate/world/map_ray.h"
 
 namespace swath::simulate {
 namespace {
@@ -88,18 +89,11 @@ bool Shooter::aim(const Line& line, std::int64_t number, Random& random, Beam& o
   }
   out.direction = ecef_R_body * (body_R_scanner_ * out.in_scanner);
 
-  // The beam on the map: a parabola through three of its points between the highest and the lowest ground.
   out.tangent = map_.tangent_of(out.origin);
   out.slope = map_.direction_of(out.direction);
-  if (out.slope.z() > -0.1) return false;
-  const double top = map_.map_of(out.tangent).z();
-  out.begin = std::max(0.0, (top - world_.relief().highest() - 1.0) / -out.slope.z());
-  const double end = std::max(out.begin + 10.0, (top - world_.relief().lowest() + 1.0) / -out.slope.z());
-  const double half = 0.5 * (end - out.begin);
-  const Vector3d a = map_.map_of(out.tangent + out.begin * out.slope), b = map_.map_of(out.tangent + (out.begin + half) * out.slope),
-                 c = map_.map_of(out.tangent + end * out.slope);
-  out.ray = {a, (4 * b - 3 * a - c) / (2 * half), (a - 2 * b + c) / (2 * half * half)};
-  out.length = end - out.begin;
+  const auto on_map = ray_down(map_, world_.relief(), out.tangent, out.slope);
+  if (!on_map) return false;
+  out.ray = on_map->ray, out.begin = on_map->begin, out.length = on_map->length;
   return true;
 }
 

@@ -29,6 +29,7 @@
 #include "simulate/files/imu_file.h"
 #include "simulate/files/laser_file.h"
 #include "simulate/files/objects_file.h"
+#include "simulate/files/photos.h"
 #include "simulate/files/survey_file.h"
 #include "simulate/files/trajectory_files.h"
 #include "simulate/planned_flight.h"
@@ -277,6 +278,7 @@ void write_navigation(const Scenery& s, const Options& o, const fs::path& folder
     const CameraMade camera = write_camera(folder, *s.world, *s.map, *s.flight, s.start, o);
     made.images = camera.images, made.image_points = camera.image_points;
     if (o.events.file) describe_camera(o, camera, survey);
+    if (o.camera.photos) write_photos(folder, *s.world, *s.map, *s.flight, o);
   }
 }
 

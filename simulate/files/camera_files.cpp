@@ -14,6 +14,7 @@
 #include "core/geo/geodesy.h"
 #include "io/text/output_file.h"
 #include "io/text/toml_text.h"
+#include "simulate/files/exposures.h"
 #include "simulate/random.h"
 
 namespace swath::simulate {
@@ -28,15 +29,6 @@ constexpr double hides = 0.5;       // share of a beam
 constexpr double millimetre = 1e3;  // per metre
 constexpr std::uint64_t of_images = 1, of_lines = std::uint64_t{1} << 40, of_marks = std::uint64_t{1} << 41,
                         of_control = std::uint64_t{1} << 42;
-
-struct Exposure {
-  int id = 0, line = 0;
-  double t = 0.0;  // s from the start of the flight
-  core::Attitude attitude;
-  Vector3d centre, antenna;  // ecef
-  Matrix3d ecef_R_body, ecef_R_camera;
-  Vector3d on_map;  // as World
-};
 
 struct GroundPoint {
   std::string name;
@@ -55,13 +47,6 @@ struct LineDrift {
 };
 
 Vector3d vector_of(const std::array<core::Metres, 3>& v) { return {v[0].value, v[1].value, v[2].value}; }
-
-Matrix3d mounting(const CameraOptions& c) {
-  Matrix3d mounted;  // the image's x axis forward, its upper edge to the left
-  mounted << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  return core::matrix_of({c.boresight[0].value, c.boresight[1].value, c.boresight[2].value}) *
-         Eigen::AngleAxisd(c.mount.value, Vector3d::UnitZ()).toRotationMatrix() * mounted;
-}
 
 template <class... Values>
 void put_row(std::string& to, const char* form, Values... values) {
@@ -101,20 +86,10 @@ class Photographer {
   double noise(double sigma) const { return o_.noise.noise_free ? 0.0 : sigma; }
 
   void expose() {
-    const Matrix3d body_R_camera = mounting(c_);
-    for (const Event& e : plan_events(flight_, o_.events, o_.seed)) {
-      const Pose pose = flight_.pose(e.t);
-      Exposure x;
-      x.id = e.id, x.line = e.line, x.t = e.t, x.attitude = pose.attitude;
-      x.ecef_R_body = core::ecef_R_ned(pose.position.latitude, pose.position.longitude) * core::matrix_of(pose.attitude);
-      x.ecef_R_camera = x.ecef_R_body * body_R_camera;
-      const Vector3d imu = core::ecef_of(pose.position);
-      x.centre = imu + x.ecef_R_body * vector_of(c_.lever_arm);
-      x.antenna = imu + x.ecef_R_body * vector_of(o_.mounting.lever_arm_antenna);
-      x.on_map = map_position(x.centre) - map_.map_origin();
-      exposures_.push_back(x);
-      LineDrift& d = drifts_.try_emplace(e.line, LineDrift{Vector3d::Zero(), Vector3d::Zero(), e.t, e.t}).first->second;
-      d.first = std::min(d.first, e.t), d.last = std::max(d.last, e.t);
+    exposures_ = camera_exposures(flight_, map_, o_);
+    for (const CameraExposure& x : exposures_) {
+      LineDrift& d = drifts_.try_emplace(x.line, LineDrift{Vector3d::Zero(), Vector3d::Zero(), x.t, x.t}).first->second;
+      d.first = std::min(d.first, x.t), d.last = std::max(d.last, x.t);
     }
     for (auto& [line, d] : drifts_) {
       Random random = random_of(o_.seed, Stream::camera, of_lines + static_cast<std::uint64_t>(line));
@@ -132,7 +107,7 @@ class Photographer {
   Vector2d corner(double along, double across) const {
     constexpr double inwards = 0.1;
     Vector2d way = exposures_[0].on_map.head<2>(), middle = Vector2d::Zero();
-    for (const Exposure& x : exposures_) {
+    for (const CameraExposure& x : exposures_) {
       middle += x.on_map.head<2>() / static_cast<double>(exposures_.size());
       if (x.line == exposures_[0].line) way = x.on_map.head<2>();
     }
@@ -140,16 +115,16 @@ class Photographer {
     if (!(way.norm() > 0.0)) way = Vector2d::UnitX();
     const Vector2d u = way.normalized(), v(-u.y(), u.x());
     Vector2d reach = Vector2d::Constant(1e-9);
-    for (const Exposure& x : exposures_) {
+    for (const CameraExposure& x : exposures_) {
       const Vector2d d = x.on_map.head<2>() - middle;
       reach = reach.cwiseMax(Vector2d(std::abs(d.dot(u)), std::abs(d.dot(v))));
     }
-    const auto share = [&](const Exposure& x) {
+    const auto share = [&](const CameraExposure& x) {
       const Vector2d d = x.on_map.head<2>() - middle;
       return along * d.dot(u) / reach.x() + across * d.dot(v) / reach.y();
     };
-    const auto farthest =
-        std::max_element(exposures_.begin(), exposures_.end(), [&](const Exposure& a, const Exposure& b) { return share(a) < share(b); });
+    const auto farthest = std::max_element(exposures_.begin(), exposures_.end(),
+                                           [&](const CameraExposure& a, const CameraExposure& b) { return share(a) < share(b); });
     return (1.0 - inwards) * farthest->on_map.head<2>() + inwards * middle;
   }
 
@@ -168,7 +143,7 @@ class Photographer {
     if (exposures_.empty()) return;
     Vector2d low = exposures_[0].on_map.head<2>(), high = low;
     double height = 0.0;
-    for (const Exposure& x : exposures_) {
+    for (const CameraExposure& x : exposures_) {
       low = low.cwiseMin(x.on_map.head<2>()), high = high.cwiseMax(x.on_map.head<2>());
       height += (x.on_map.z() - o_.world.ground.value) / static_cast<double>(exposures_.size());
     }
@@ -201,7 +176,7 @@ class Photographer {
     return {static_cast<int>(std::floor(at.x() / cell_)), static_cast<int>(std::floor(at.y() / cell_))};
   }
 
-  bool is_hidden(const Exposure& x, const GroundPoint& p) const {
+  bool is_hidden(const CameraExposure& x, const GroundPoint& p) const {
     const Vector3d way = p.on_map - x.on_map;
     const double length = way.norm();
     const Ray ray{x.on_map, way / length, Vector3d::Zero()};
@@ -216,7 +191,7 @@ class Photographer {
   }
 
   void photograph(std::uint32_t image) {
-    const Exposure& x = exposures_[image];
+    const CameraExposure& x = exposures_[image];
     Random random = random_of(o_.seed, Stream::camera, of_marks / 2 + image);
     const auto [ce, cn] = cell_of(x.on_map);
     constexpr int around = 3;
@@ -242,7 +217,7 @@ class Photographer {
     std::string table = "name,strip,time,x,y,z,roll,pitch,heading\n", truth = table,
                 drift = "strip,shift_e,shift_n,shift_u,change_e,change_n,change_u\n";
     for (std::uint32_t i = 0; i < exposures_.size(); ++i) {
-      const Exposure& x = exposures_[i];
+      const CameraExposure& x = exposures_[i];
       const LineDrift& d = drifts_.at(x.line);
       const double u = d.last > d.first ? (x.t - d.first) / (d.last - d.first) : 0.0, time = start_ + x.t;
       Random random = random_of(o_.seed, Stream::camera, of_images + 1 + i);
@@ -340,7 +315,7 @@ class Photographer {
   const Options& o_;
   const CameraOptions& c_;
   core::Transform to_map_, to_ecef_;
-  std::vector<Exposure> exposures_;
+  std::vector<CameraExposure> exposures_;
   std::vector<GroundPoint> points_;
   std::vector<Mark> marks_;
   std::map<int, LineDrift> drifts_;
@@ -351,18 +326,6 @@ class Photographer {
 };
 
 }  // namespace
-
-std::optional<Vector2d> seen_at(const CameraOptions& c, const Vector3d& d) {
-  if (!(d.z() < 0.0)) return {};
-  const double f = millimetre * c.f.value, x = -f * d.x() / d.z(), y = -f * d.y() / d.z();
-  const Vector2d half = 0.5 * millimetre * c.pixel.value * Vector2d(c.columns, c.rows);
-  if (std::abs(x) > 1.3 * half.x() || std::abs(y) > 1.3 * half.y()) return {};  // the polynomial may fold far outside
-  const double r2 = x * x + y * y, radial = r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-  const Vector2d at(millimetre * c.x0.value + x + x * radial + c.p1 * (r2 + 2.0 * x * x) + 2.0 * c.p2 * x * y,
-                    millimetre * c.y0.value + y + y * radial + c.p2 * (r2 + 2.0 * y * y) + 2.0 * c.p1 * x * y);
-  if (std::abs(at.x()) > half.x() || std::abs(at.y()) > half.y()) return {};
-  return at;
-}
 
 CameraMade write_camera(const std::filesystem::path& folder, const World& world, const MapPatch& map, const Flight& flight,
                         core::GpsTime start, const Options& options) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image points of the scene by a camera on the flight, with everything that `swath block` reads. The projection is this room's own.
+// Image points of the scene by a camera on the flight, with everything that `swath block` reads.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +16,6 @@
 #include "simulate/world/world.h"
 
 namespace swath::simulate {
-
-/// Where a point in camera axes (x right, y up, z backward) is seen, mm from the middle of the sensor, y up; nothing beyond the sensor or
-/// behind the camera.
-std::optional<Eigen::Vector2d> seen_at(const CameraOptions& camera, const Eigen::Vector3d& direction);
 
 struct CameraMade {
   std::uint64_t images = 0, points = 0, image_points = 0, hidden = 0;

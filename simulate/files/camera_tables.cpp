@@ -40,6 +40,10 @@ void describe_camera(const Options& o, const CameraMade& made, io::Survey& surve
   points.unit = io::ImageUnit::pixel, points.y = io::ImageY::down, points.origin = io::ImageOrigin::corner;
   points.sigma_pixels = std::max(o.camera.noise, 1e-3);
   survey.image_points = {points};
+  if (o.camera.photos) {
+    survey.photos.emplace_back();
+    survey.photos.back().folder = "photos";
+  }
   for (const bool check : {false, true}) {
     if (!(check ? made.has_check : made.has_control)) continue;
     io::ControlFile f;

@@ -55,6 +55,7 @@ Value fallback_of(const std::string& list) {
     return v;
   }
   if (list == "image_points") return effective(io::ImageFile{});
+  if (list == "photos") return effective(io::PhotoFiles{});
   if (list == "control") return effective(io::ControlFile{});
   if (list == "points") return effective(io::PointFile{});
   return Value::object();

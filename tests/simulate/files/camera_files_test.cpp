@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "io/text/text_table.h"
+#include "simulate/files/exposures.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"
 
@@ -20,17 +21,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-TEST(CameraFiles, SeenAtIsBrownsModel) {
-  CameraOptions c;
-  c.f = core::Metres(0.05), c.x0 = core::Metres(1e-5), c.y0 = core::Metres(-2e-5);
-  c.k1 = 1e-5, c.k2 = 0.0, c.p1 = 2e-6, c.p2 = 0.0;
-  const Vector2d at = *seen_at(c, {0.2, -0.1, -1.0});  // x 10 mm, y -5 mm: r^2 125
-  EXPECT_NEAR(at.x(), 0.01 + 10.0 + 10.0 * 125.0 * 1e-5 + 2e-6 * (125.0 + 200.0), 1e-12);
-  EXPECT_NEAR(at.y(), -0.02 - 5.0 - 5.0 * 125.0 * 1e-5 + 2e-6 * 2.0 * 10.0 * -5.0, 1e-12);
-  EXPECT_FALSE(seen_at(c, {0.2, -0.1, 1.0}));
-  EXPECT_FALSE(seen_at(c, {0.6, 0.0, -1.0}));
-}
 
 Options small_flight() {
   Options o;
