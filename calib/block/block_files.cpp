@@ -8,6 +8,7 @@
 
 #include "calib/block/block_page.h"
 #include "calib/block/geolocation_files.h"
+#include "calib/block/imagery/joint_covariance.h"
 #include "calib/block/mark_plane.h"
 #include "calib/block/orientation_table.h"
 #include "calib/block/patb_files.h"
@@ -187,6 +188,33 @@ std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, co
   return out;
 }
 
+JointCovariance joint_covariance(const ReadBlock& read, const BlockSolution& s) {
+  JointCovariance out;
+  const auto spread = [&](size_t camera, const auto& from, auto to) {  // free values among all
+    const std::vector<int>& free = s.linear.nodes[camera].components;
+    for (size_t k = 0; k < free.size(); ++k) to.col(free[k]) = from.col(static_cast<Eigen::Index>(k));
+  };
+  for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
+    const UnknownNode& node = s.linear.nodes[n];
+    if (node.kind == NodeKind::camera) {
+      Eigen::Matrix<double, Eigen::Dynamic, camera_values> columns =
+          Eigen::Matrix<double, Eigen::Dynamic, camera_values>::Zero(s.inference.nodes[n].rows(), camera_values);
+      spread(n, s.inference.nodes[n], columns.leftCols(camera_values));
+      CameraCovariance all = CameraCovariance::Zero();
+      spread(n, columns.transpose(), all.leftCols<camera_values>());
+      out.cameras[read.block.cameras[node.index].name] = all;
+    }
+    if (node.kind != NodeKind::image || s.inference.camera_of[n] < 0) continue;
+    const BlockImage& image = read.block.images[node.index];
+    MatrixXd by_camera = s.inference.with_camera[n];
+    by_camera.topRows<3>() = read.frame.local_R_grid(image.position).transpose() * by_camera.topRows<3>();
+    PoseByCamera all = PoseByCamera::Zero();
+    spread(static_cast<size_t>(s.inference.camera_of[n]), by_camera, all.leftCols<camera_values>());
+    out.images[image.name] = all;
+  }
+  return out;
+}
+
 std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found) {
   const bool of_survey = std::any_of(config.cameras.begin(), config.cameras.end(), [](const CameraConfig& c) { return c.of_survey; });
   std::string out = "# Cameras after the adjustment: tables that " + std::string(of_survey ? "survey.toml" : "`swath block`") +
@@ -224,8 +252,9 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
 }
 
 std::vector<std::string> block_products() {
-  return {"orientation.csv", "geo.txt", "geolocation.csv", "camera.toml", "points.gpkg", "points.laz", "colmap",
-          "opensfm",         "patb",    "block.json",      "report.html"};
+  return {"orientation.csv", joint_covariance_file, "geo.txt", "geolocation.csv", "camera.toml",
+          "points.gpkg",     "points.laz",          "colmap",  "opensfm",         "patb",
+          "block.json",      "report.html"};
 }
 
 std::vector<std::string> write_block(const std::filesystem::path& folder, const ReadBlock& read, const BlockConfig& config,
@@ -237,6 +266,8 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
     out.emplace_back(name);
   };
   text("orientation.csv", orientation_csv(read, config, s));
+  if (const JointCovariance joint = joint_covariance(read, s); !joint.images.empty())
+    text(joint_covariance_file, joint_covariance_csv(config.crs, joint));
   if (!read.frame.is_local()) {
     const std::vector<Geolocation> images = geolocations(read, s);
     text("geo.txt", geo_text(config.crs, images));

@@ -64,6 +64,26 @@ void add_sums(const LinearBlock& linear, const std::vector<double>& of_ray, Bloc
   }
 }
 
+/// Covariances of images with their cameras, which the factor's pattern has where a ray has both.
+void add_cameras(const BlockNormals& normals, const NodeFactor& factor, BlockInference& out) {
+  const LinearBlock& l = normals.linear();
+  out.with_camera.resize(l.nodes.size());
+  out.camera_of.assign(l.nodes.size(), -1);
+  for (const BlockObservation& o : l.observations) {
+    if (o.kind != ObservationKind::ray) continue;
+    int image = -1, camera = -1;
+    for (const int n : normals.nodes_of(o)) {
+      if (l.nodes[static_cast<size_t>(n)].kind == NodeKind::image) image = n;
+      if (l.nodes[static_cast<size_t>(n)].kind == NodeKind::camera) camera = n;
+    }
+    if (image < 0 || camera < 0 || out.camera_of[static_cast<size_t>(image)] >= 0) continue;
+    const MatrixXd both = factor.covariance({image, camera});
+    const Eigen::Index own = out.nodes[static_cast<size_t>(image)].rows();
+    out.with_camera[static_cast<size_t>(image)] = both.topRightCorner(own, both.cols() - own);
+    out.camera_of[static_cast<size_t>(image)] = camera;
+  }
+}
+
 }  // namespace
 
 BlockInference infer(const LinearBlock& linear, const std::vector<double>& of_ray) {
@@ -76,6 +96,7 @@ BlockInference infer(const LinearBlock& linear, const std::vector<double>& of_ra
   if (!out.determined() || !out.unsound_points.empty()) return out;
   factor.invert();
   for (int n = 0; n < static_cast<int>(linear.nodes.size()); ++n) out.nodes.push_back(factor.covariance({n}));
+  add_cameras(normals, factor, out);
   out.points.assign(linear.point_column.size(), Matrix3d::Zero());
   out.redundancy.assign(linear.residual.size(), 0.0f);
   out.w = out.outer = out.redundancy;

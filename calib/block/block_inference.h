@@ -18,6 +18,8 @@ struct BlockInference {
   double smallest_pivot = 1.0;                          ///< of the scaled normal equations
   std::vector<std::uint32_t> unsound_points;            ///< whose rays are parallel: without covariance
   std::vector<Eigen::MatrixXd> nodes;                   ///< covariance of each node's unknowns
+  std::vector<Eigen::MatrixXd> with_camera;             ///< per node of an image: with the free values of its camera; may be empty
+  std::vector<int> camera_of;                           ///< per node of an image: the node of its camera; -1: it has no free values
   std::vector<Eigen::Matrix3d> points;                  ///< m^2; zero where a point takes no part
   std::vector<float> redundancy;                        ///< per row, 0 to 1
   std::vector<float> w;                                 ///< per row, residual over its own sigma; 0 where the redundancy is

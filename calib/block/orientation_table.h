@@ -13,7 +13,7 @@ struct ImageOrientation {
   Eigen::Vector3d map = Eigen::Vector3d::Zero();  ///< perspective centre: easting, northing, height of the CRS
   Eigen::Matrix3d grid_R_camera = Eigen::Matrix3d::Identity();
   core::Attitude attitude;  ///< of the body, from true north
-  /// East, north, up of the grid, m; rotations about the camera's axes, rad.
+  /// East, north, up of the grid, m; rotation w about the camera's axes, rad: camera_R_grid is exp(w) times the true one.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -33,6 +33,22 @@ TEST(BlockInference, CovariancesAndRedundanciesAreThoseOfTheDenseInverse) {
       const double expected = C(l.nodes[n].first + k, l.nodes[n].first + k);
       EXPECT_NEAR(found.nodes[n](k, k), expected, share * expected);
     }
+  size_t images = 0;
+  for (size_t n = 0; n < l.nodes.size(); ++n) {
+    if (l.nodes[n].kind != NodeKind::image) continue;
+    ++images;
+    ASSERT_GE(found.camera_of[n], 0);
+    const UnknownNode& camera = l.nodes[static_cast<size_t>(found.camera_of[n])];
+    EXPECT_EQ(camera.kind, NodeKind::camera);
+    const Eigen::MatrixXd& with = found.with_camera[n];
+    ASSERT_EQ(with.cols(), static_cast<Eigen::Index>(camera.components.size()));
+    for (Eigen::Index r = 0; r < with.rows(); ++r)
+      for (Eigen::Index k = 0; k < with.cols(); ++k) {
+        const int a = l.nodes[n].first + static_cast<int>(r), b = camera.first + static_cast<int>(k);
+        EXPECT_NEAR(with(r, k), C(a, b), share * std::sqrt(C(a, a) * C(b, b)));
+      }
+  }
+  EXPECT_EQ(images, block.images.size());
   for (size_t p = 0; p < block.points.size(); ++p)
     for (int k = 0; k < 3; ++k) {
       const double expected = C(l.point_column[p] + k, l.point_column[p] + k);
