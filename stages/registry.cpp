@@ -4,6 +4,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/copc.h"
 #include "stages/adapters/cloud/crop.h"
+#include "stages/adapters/imagery/photos.h"
 #include "stages/adapters/quality/quality_stages.h"
 #include "stages/adapters/terrain/buildings.h"
 #include "stages/adapters/terrain/forest.h"
@@ -72,6 +73,9 @@ const std::vector<Entry>& registry() {
       forest_stage(),
       buildings_stage(),
       power_lines_stage(),
+      orthophoto_stage(),
+      true_orthophoto_stage(),
+      colour_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),
       copc_writer_stage(),

@@ -29,6 +29,7 @@ struct Job {
   std::vector<JobOption> options{};
   std::string classified{};  ///< config for clouds whose classes are taken as they are; empty: the job has none
   bool judges = false;       ///< takes check points, a reference and a quality level
+  bool photos = false;       ///< takes oriented photographs
 };
 
 const std::vector<Job>& jobs() {
@@ -51,6 +52,24 @@ const std::vector<Job>& jobs() {
        {},
        {},
        true},
+      {"colour",
+       "colour",
+       "Examples\n  swath colour flight.laz --photos photos --orientation block/orientation.csv --camera block/camera.toml\n\nGive point "
+       "clouds the colours of oriented photographs; what no camera sees has none.",
+       {},
+       {},
+       false,
+       true},
+      {"orthophoto",
+       "orthophoto",
+       "Examples\n  swath orthophoto flight.laz --photos photos --orientation block/orientation.csv --camera block/camera.toml\n  swath "
+       "orthophoto tiles/ --photos photos --orientation block/orientation.csv --camera block/camera.toml --pixel 10cm\n\nMake a terrain "
+       "model, an orthophoto on it and a true orthophoto on the surface model of point clouds and oriented photographs.",
+       {{"--cell", "dtm.cell", Dimension::length, "50cm", "Side of the terrain model's cells"},
+        {"--pixel", "orthophoto.cell", Dimension::length, "10cm", "Side of the orthophoto's cells"}},
+       {},
+       false,
+       true},
       {"copc", "copc", "Examples\n  swath copc tiles/\n\nWrite point clouds as COPC, the form of LAZ that viewers stream."},
   };
   return list;
@@ -63,6 +82,8 @@ struct Given {
   std::vector<std::filesystem::path> check;
   std::string check_crs, check_columns, level = "none";
   std::filesystem::path reference;
+  std::filesystem::path photos, orientation, camera;
+  std::string orientation_crs;
   pipeline::Request request;
   std::filesystem::path save;
   Loudness loudness;
@@ -112,6 +133,17 @@ void add_judgement(const Given& a, const std::vector<std::filesystem::path>& clo
   (*out.survey_tree)["control"] = std::move(control);
 }
 
+void add_photos(const Given& a, core::Value& survey) {
+  core::Value one = core::Value::object();
+  one["folder"] = core::Value(std::filesystem::absolute(a.photos).string());
+  one["orientation"] = core::Value(std::filesystem::absolute(a.orientation).string());
+  one["camera"] = core::Value(std::filesystem::absolute(a.camera).string());
+  if (!a.orientation_crs.empty()) one["crs"] = core::Value(a.orientation_crs);
+  core::Value list = core::Value::array();
+  list.push(std::move(one));
+  survey["photos"] = std::move(list);
+}
+
 /// Tiles of at most max_cells a side, for cells finer than the usual tile is made for. `--set run.tile`, which comes later, decides.
 void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& out) {
   constexpr double usual_tile = 500.0, least_tile = 10.0, max_cells = 2000.0;  // m, m; along a side
@@ -152,11 +184,13 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     if (a.values[k].empty()) continue;
     quantity(o.dimension, a.values[k], o.flag, o.example);
     out.sets.push_back(o.option + "=" + a.values[k]);
-    if (o.option == "dtm.cell") fit_tile(a.values[k], o, out);
+    if (o.option == "dtm.cell" || o.option == "orthophoto.cell") fit_tile(a.values[k], o, out);
+    if (o.option == "orthophoto.cell") out.sets.push_back("true_orthophoto.cell=" + a.values[k]);
     if (o.option == "contours.interval") fit_lines(a.values[k], o, out);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
   if (job.judges) add_judgement(a, files, out), require_ground(files, a.request.sets);
+  if (job.photos) add_photos(a, *out.survey_tree);
   if (out.output.empty()) out.output = pipeline::proposed_output(files, job.name);
   return out;
 }
@@ -216,6 +250,12 @@ void add_job(Commands& commands, const Job& job) {
     c->add_option("--check-crs", a->check_crs, "Their CRS, where it is not the survey's");
     c->add_option("--reference", a->reference, "Terrain model to compare with, GeoTIFF or VRT");
     c->add_option("--level", a->level, "Quality level of the USGS, QL0 to QL3; none: figures without a verdict")->capture_default_str();
+  }
+  if (job.photos) {
+    c->add_option("--photos", a->photos, "Folder of the photographs, as the camera took them")->required();
+    c->add_option("--orientation", a->orientation, "Table of their orientations: orientation.csv of `swath block`")->required();
+    c->add_option("--camera", a->camera, "Table of the camera: camera.toml of `swath block`")->required();
+    c->add_option("--orientation-crs", a->orientation_crs, "CRS of the orientations, where their table states none and it is another");
   }
   c->add_option("--crs", a->crs, "CRS of the products, and of clouds that state none: EPSG:25832");
   c->add_option("--set", a->request.sets, "One option of one stage of the config " + job.config)->allow_extra_args(false);

@@ -250,10 +250,10 @@ class Runs(Case):
         self.assertTrue((self.folder / "given" / "trajectory.sbet").exists())
         # survey.toml, trajectory.toml and events.toml, which need other records, run in navigation_test.py, lever_arm.toml in
         # lever_arm_test.py, strips.toml in strips_test.py, network.toml in network_test.py, calibrate.toml in calibration_test.py,
-        # block.toml in block_run_test.py.
+        # block.toml in block_run_test.py, colour.toml and orthophoto.toml in photos_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
                  "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml", "corridor.toml",
-                 "convert_trajectory.toml", "forest.toml", "buildings.toml", "qc.toml", "network.toml", "block.toml"}
+                 "convert_trajectory.toml", "forest.toml", "buildings.toml", "qc.toml", "network.toml", "block.toml", "colour.toml", "orthophoto.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

@@ -24,7 +24,7 @@ PLACEHOLDERS = {"SURVEY": "survey", "DIR": "demo", "LENGTH": '"1 km"', "WIDTH": 
 SMALL = ["world.scene=hills", "world.length=300 m", "world.width=200 m", "flight.lines=2", "flight.cross_lines=0", "flight.height=300 m",
          "scanner.prf=2 kHz"]
 CAMERA = [*SMALL, "output.laser=false", "output.trajectory=none", "events.file=true", "camera.file=true"]
-SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar", "block": "camera"}  # config: what it starts from
+SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar", "block": "camera", "colour": "photos", "orthophoto": "photos"}  # config: what it starts from
 LONGEST = 60  # s that a command may take, and a simulation before it begins to write
 
 
@@ -125,10 +125,16 @@ class Examples(unittest.TestCase):
         done = call("simulate", cls.folder / "kinds/camera", "--quiet", *[f"--set={s}" for s in CAMERA])
         assert done.returncode == 0, done.stderr
         for kind, text in (("cloud", 'name = "cloud"\ncrs = "EPSG:32632"\n\n[[points]]\nfile = "cloud.las"\ncrs = "EPSG:32632"\n'),
+                           ("photos", 'name = "cloud"\ncrs = "EPSG:32632"\n\n[[points]]\nfile = "cloud.las"\ncrs = "EPSG:32632"\n\n'
+                            '[[photos]]\nfolder = "photos"\norientation = "orientation.csv"\ncamera = "camera.toml"\n'),
                            ("hangar", 'name = "hangar"\nhangar = "hangar.toml"\n')):
             (cls.folder / "kinds" / kind).mkdir()
             (cls.folder / "kinds" / kind / "survey.toml").write_text(text)
         write_las(cls.folder / "kinds/cloud/cloud.las")
+        write_las(cls.folder / "kinds/photos/cloud.las")
+        (cls.folder / "kinds/photos/photos").mkdir()
+        (cls.folder / "kinds/photos/orientation.csv").write_text("image,x,y,z,omega,phi,kappa\n1,500,500,1500,0,0,0\n")
+        (cls.folder / "kinds/photos/camera.toml").write_text('[[camera]]\nname = "a"\nf = "50 mm"\ncolumns = 10\nrows = 10\npixel = "5 um"\n')
         for page in (ROOT / "docs").glob("*.md"):  # configs that a page gives, named in a line of their own
             for block in blocks(page.read_text(encoding="utf-8")):
                 named = re.search(r"^# (\w+\.toml)\n", block, re.M)
@@ -188,7 +194,7 @@ class Examples(unittest.TestCase):
                     self.assertEqual(self.judge_run(words).returncode, 0)
                 done = call(*words, cwd=self.folder)
             missing = re.search(r"error: (\S+): .*no such (?:file|folder)", done.stderr, re.I)
-            if words[0] in ("info", "volumes", "profile", "map-dtm", "simulate", "plan", "block", "block-drift", "undistort", "dtm", "classify", "qc", "copc", "init", "view") and missing and any(missing[1] in w for w in words):
+            if words[0] in ("info", "volumes", "profile", "map-dtm", "simulate", "plan", "block", "block-drift", "undistort", "dtm", "classify", "qc", "copc", "colour", "orthophoto", "init", "view") and missing and any(missing[1] in w for w in words):
                 return  # the example's own file, which is not there
             if words[0] == "view" and "out: holds neither points nor a terrain model" in done.stderr:
                 return  # the products of the page's run, which was checked and not made

@@ -38,7 +38,14 @@ int copc_format(int format) {
   return like[static_cast<std::size_t>(format)];
 }
 
-LasRun las_run(const Context& context, const PointFields& fields) {
+/// The one with colours and all fields of the given format.
+int coloured_format(int format) {
+  constexpr std::array<int, 11> like{2, 3, 2, 3, 5, 5, 7, 7, 8, 10, 10};
+  return like[static_cast<std::size_t>(format)];
+}
+
+/// `coloured`: the points have colours, of their files or of a stage of the run.
+LasRun las_run(const Context& context, const PointFields& fields, bool coloured) {
   std::vector<io::LasSource> files = io::cloud_sources(context.survey, cloud_map(context));
   const auto all_of = [&](const auto& is) { return std::all_of(files.begin(), files.end(), is); };
   const bool same_places = all_of([](const io::LasSource& s) { return s.same_places; });
@@ -50,7 +57,8 @@ LasRun las_run(const Context& context, const PointFields& fields) {
   auto all = std::make_shared<const io::LasSources>(std::move(files), fields.times == WrittenTimes::recorded);
   const int common = all->header(false).point_format;
   std::optional<int> format = fields.point_format;
-  if (fields.only_copc && !format) format = copc_format(common);
+  if (!format && coloured && coloured_format(common) != common) format = coloured_format(common);
+  if (fields.only_copc && !fields.point_format) format = copc_format(format.value_or(common));
   const bool keep_crs = keeps && (all_extended || format.value_or(common) < 6);
   LasRun run{all, all->header(keep_crs), all->left_out()};
   io::LasHeader& header = run.header;
@@ -92,19 +100,19 @@ io::TileFacts write_points(TileJob& job, const Context& context, const PointFiel
   date_file(context, o);
   o.threads = 1;
   std::optional<io::LasWriter> writer;
-  const auto open = [&](bool has_sources) {
-    if (has_sources) {
-      const LasRun& run = cache.get([&] { return las_run(context, fields); });
+  const auto open = [&](const core::Block& first) {
+    if (!first.source.empty()) {
+      const LasRun& run = cache.get([&] { return las_run(context, fields, !first.red.empty()); });
       o.sources = run.sources, o.header = run.header;
     }
     writer.emplace(file, o);
   };
   // Fields hang on all of the points, so that these are gone through twice.
   job.stream([&](core::Block& block) {
-    if (!writer) open(!block.source.empty());
+    if (!writer) open(block);
     writer->look_at(block);
   });
-  if (!writer) open(false);
+  if (!writer) open({});
   io::TileFactsOf facts;
   job.stream([&](core::Block& block) {
     if (o.sources) o.sources->complete(block);
