@@ -3,6 +3,7 @@
 // quaternion and the translation take a point to the camera (x right, y down, z forward); pixels count from the outer corner of the upper
 // left pixel. The image's own axes here are x right, y up, z backward: the second and third row change their sign.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 
 #include "core/config/units.h"
@@ -120,6 +121,27 @@ void write_colmap_images(const std::filesystem::path& folder, const ImageData& d
   write_text_file(folder / "images.txt", text);
 }
 
+/// The place of a point in camera axes (x right, y down, z forward), pixels.
+Eigen::Vector2d pixel_of(const FileCamera& c, const Eigen::Vector3d& d) {
+  const double x = d.x() / d.z(), y = d.y() / d.z(), r2 = x * x + y * y, radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  return {c.cx + c.fx * (x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x)),
+          c.cy + c.fy * (y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y)};
+}
+
+/// By point: mean distance of its marks from where the cameras see it, pixels.
+std::vector<double> reprojection_errors(const ImageData& data, const std::vector<PlacedPoint>& points) {
+  std::vector<double> sums(points.size(), 0.0);
+  std::vector<int> marks(points.size(), 0);
+  for (const ImageMark& m : data.marks) {
+    const FilePose& pose = data.poses[m.image];
+    const Eigen::Vector3d d = down_forward.asDiagonal() * (pose.camera_R_frame * (points[m.point].position - pose.position));
+    sums[m.point] += (pixel_of(data.cameras[data.camera_of[m.image]], d) - Eigen::Vector2d(m.x, m.y)).norm();
+    ++marks[m.point];
+  }
+  for (size_t p = 0; p < sums.size(); ++p) sums[p] /= std::max(1, marks[p]);
+  return sums;
+}
+
 }  // namespace
 
 ImageData read_colmap(const std::filesystem::path& folder) {
@@ -153,10 +175,12 @@ void write_colmap(const std::filesystem::path& folder, const ImageData& data, co
   std::vector<std::string> tracks(points.size());
   std::vector<size_t> on_image(data.images.size(), 0);
   for (const ImageMark& m : data.marks) tracks[m.point] += " " + std::to_string(m.image + 1) + " " + std::to_string(on_image[m.image]++);
+  const std::vector<double> errors = reprojection_errors(data, points);
   text = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
   for (size_t p = 0; p < points.size(); ++p) {
     const Eigen::Vector3d& X = points[p].position;
-    if (!tracks[p].empty()) text += std::to_string(p + 1) + numbers({X.x(), X.y(), X.z()}) + " 128 128 128 0" + tracks[p] + "\n";
+    if (!tracks[p].empty())
+      text += std::to_string(p + 1) + numbers({X.x(), X.y(), X.z()}) + " 128 128 128" + numbers({errors[p]}) + tracks[p] + "\n";
   }
   write_text_file(folder / "points3D.txt", text);
 }

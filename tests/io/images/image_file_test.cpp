@@ -126,6 +126,30 @@ TEST_F(ImageFiles, ColmapThereAndBack) {
   }
 }
 
+TEST_F(ImageFiles, ColmapsPointsHaveTheirReprojectionErrors) {
+  ImageData d;
+  d.cameras.push_back({"1", 4000, 3000, 3000.0, 3000.0, 2000.0, 1500.0, 0.1, 0.0, 0.0, 0.01, 0.02});
+  d.images = {"a", "b"};
+  d.camera_of = {0, 0};
+  d.poses = {{0, Eigen::Matrix3d::Identity(), {0, 0, 10}}, {1, Eigen::Matrix3d::Identity(), {1, 0, 10}}};
+  d.points = {"7", "8"};
+  // The first image sees (1, -2, 0) at (0.1, 0.2), y down: r2 = 0.05, radial 1.005. By OpenCV x = 0.1005 + 2 0.01 0.02 + 0.02 0.07,
+  // y = 0.201 + 0.01 0.13 + 2 0.02 0.02. The second one sees it at (0, 0.2): x = 0.02 0.04, y = 0.2 1.004 + 0.01 0.12.
+  const double x = 2000.0 + 3000.0 * 0.1023, y = 1500.0 + 3000.0 * 0.2031, x2 = 2000.0 + 3000.0 * 0.0008, y2 = 1500.0 + 3000.0 * 0.202;
+  d.marks = {{0, 0, x + 0.3, y - 0.4, 0}, {1, 0, x2, y2 + 0.25, 0}, {0, 1, 2000.0, 1500.0, 0}};
+  write_colmap(folder_.path() / "sparse", d, {{"7", {1, -2, 0}}, {"8", {0, 0, -5}}});
+  std::ifstream file(folder_.path() / "sparse/points3D.txt");
+  std::string line;
+  std::getline(file, line);
+  for (const double want : {(0.5 + 0.25) / 2.0, 0.0}) {
+    int id = 0, r = 0, g = 0, b = 0;
+    double X = 0.0, Y = 0.0, Z = 0.0, error = -1.0;
+    file >> id >> X >> Y >> Z >> r >> g >> b >> error;
+    EXPECT_NEAR(error, want, 1e-9) << id;
+    std::getline(file, line);
+  }
+}
+
 TEST_F(ImageFiles, OpenSfmThereAndBack) {
   const ImageData d = model();
   write_opensfm(folder_.path() / "sfm", d, {{"7", {1, 2, 3}}, {"8", {4, 5, 6}}, {"9", {7, 8, 9}}});
