@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "calib/block/block_diagnosis.h"
 #include "calib/block/block_inference.h"
@@ -44,7 +45,7 @@ void add_images(ImageBlock& b, const TheoryOptions& o, const TheoryCase& c) {
   for (int s = 0; s < o.strips; ++s, t += o.turn.value)
     for (int i = 0; i < o.images; ++i, t += step) {
       const bool back = s % 2 == 1;
-      add_image(b, l.base * (back ? o.images - 1 - i : i), l.distance * s, l.height, back ? core::pi : 0.0, s, t);
+      add_image(b, l.base * (back ? o.images - 1 - i : i), l.distance * s, l.height, back ? core::pi : 0.0, s + 1, t);
     }
   const int count = static_cast<int>(std::ceil((o.strips + 1) * l.distance / l.base - 1e-9)) + 1;
   const double begin = ((o.strips - 1) * l.distance - (count - 1) * l.base) / 2.0;
@@ -53,7 +54,7 @@ void add_images(ImageBlock& b, const TheoryOptions& o, const TheoryCase& c) {
     const double x = l.base * (1.0 + std::round(share * (o.images - 3)));
     for (int i = 0; i < count; ++i, t += step) {
       const bool back = s % 2 == 1;
-      add_image(b, x, begin + l.base * (back ? count - 1 - i : i), l.height, back ? -core::pi / 2.0 : core::pi / 2.0, o.strips + s, t);
+      add_image(b, x, begin + l.base * (back ? count - 1 - i : i), l.height, back ? -core::pi / 2.0 : core::pi / 2.0, o.strips + s + 1, t);
     }
   }
 }
@@ -99,33 +100,47 @@ std::vector<TheoryDemand> usual_demands() {
           {"1:10 000", 25000.0, Metres(0.8), Metres(0.6)}};
 }
 
-/// Accuracy in units of sigma0 s against the station sigma in that unit: the same for all scales while control has that unit, too.
-struct Curve {
-  std::vector<double> station, mu_xy, mu_z;
-};
+/// Accuracy of a case against the sigma of stations, m, both rising; what was computed is kept.
+class AccuracyByStation {
+ public:
+  AccuracyByStation(const TheoryOptions& o, const TheoryCase& c) : options_(o), case_(c) {}
 
-Curve curve_of(TheoryOptions o, const TheoryCase& c) {
-  Curve out;
-  for (double s = 0.05; s < 150.0; s *= 1.5) {
-    o.sigma_station = core::Metres(s * o.unit());
-    const TheoryFound f = theory_of(o, c);
-    if (!f.refused.empty()) return {};
-    out.station.push_back(s);
-    out.mu_xy.push_back(f.mu_xy / f.unit);
-    out.mu_z.push_back(f.mu_z / f.unit);
+  /// Station sigma, m, at which `mu` of the accuracy is `demand`, to one part in 10 000.
+  std::optional<double> reached(double TheoryFound::*mu, double demand, bool& unreachable) {
+    constexpr double exact = 1e-4, perfect = 0.05, useless = 150.0;  // of the unit: nothing changes beyond
+    constexpr int max_steps = 60;
+    double low = perfect * options_.unit(), high = useless * options_.unit();
+    unreachable = demand < at(low).*mu;
+    if (unreachable || demand >= at(high).*mu) return {};
+    for (const auto& [sigma, found] : found_) {
+      if (found.*mu <= demand) low = std::max(low, sigma);
+      if (found.*mu > demand) high = std::min(high, sigma);
+    }
+    const auto square = [](double x) { return x * x; };
+    double middle = low;
+    for (int step = 0; step < max_steps; ++step) {
+      // Variances are nearly linear in one another where the bracket is narrow.
+      const double share = (square(demand) - square(at(low).*mu)) / (square(at(high).*mu) - square(at(low).*mu));
+      middle = step % 2 == 0 ? std::sqrt(square(low) + share * (square(high) - square(low))) : std::sqrt(low * high);
+      const double reached = at(middle).*mu;
+      if (std::abs(reached - demand) < exact * demand) break;
+      (reached < demand ? low : high) = middle;
+    }
+    return middle;
   }
-  return out;
-}
 
-/// Station sigma where the curve reaches `demand`; between samples variances are nearly linear in one another.
-std::optional<double> reached(const std::vector<double>& station, const std::vector<double>& mu, double demand, bool& unreachable) {
-  unreachable = mu.empty() || demand < mu.front();
-  if (unreachable || demand >= mu.back()) return {};
-  const auto k = static_cast<size_t>(std::upper_bound(mu.begin(), mu.end(), demand) - mu.begin());
-  const auto square = [](double x) { return x * x; };
-  const double share = (square(demand) - square(mu[k - 1])) / (square(mu[k]) - square(mu[k - 1]));
-  return std::sqrt(square(station[k - 1]) + share * (square(station[k]) - square(station[k - 1])));
-}
+ private:
+  const TheoryFound& at(double sigma) {
+    const auto known = found_.find(sigma);
+    if (known != found_.end()) return known->second;
+    options_.sigma_station = core::Metres(sigma);
+    return found_.emplace(sigma, theory_of(options_, case_)).first->second;
+  }
+
+  TheoryOptions options_;
+  TheoryCase case_;
+  std::map<double, TheoryFound> found_;
+};
 
 }  // namespace
 
@@ -183,14 +198,15 @@ TheoryTable theory_table(TheoryOptions o) {
   TheoryTable out;
   for (const TheoryCase& c : o.cases) {
     out.cases.push_back(theory_of(o, c));
-    const Curve curve = out.cases.back().refused.empty() ? curve_of(o, c) : Curve{};
+    const bool solved = out.cases.back().refused.empty();
     for (const TheoryDemand& d : o.demands) {
-      const double unit = o.sigma_image.value * d.scale;
+      TheoryOptions flown = o;
+      flown.scale = d.scale;
+      AccuracyByStation accuracy(flown, c);
       AllowedFound a{d.map, c.name, d.scale, {}, {}};
-      if (d.mu_xy) a.for_xy = reached(curve.station, curve.mu_xy, d.mu_xy->value / unit, a.xy_unreachable);
-      if (d.mu_z) a.for_z = reached(curve.station, curve.mu_z, d.mu_z->value / unit, a.z_unreachable);
-      if (a.for_xy) *a.for_xy *= unit;
-      if (a.for_z) *a.for_z *= unit;
+      a.xy_unreachable = d.mu_xy && !solved, a.z_unreachable = d.mu_z && !solved;
+      if (solved && d.mu_xy) a.for_xy = accuracy.reached(&TheoryFound::mu_xy, d.mu_xy->value, a.xy_unreachable);
+      if (solved && d.mu_z) a.for_z = accuracy.reached(&TheoryFound::mu_z, d.mu_z->value, a.z_unreachable);
       out.allowed.push_back(a);
     }
   }

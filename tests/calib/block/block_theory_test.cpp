@@ -86,15 +86,42 @@ TEST(BlockTheory, BackwardsGivesTheStationSigmaOfATolerance) {
   EXPECT_FALSE(t.allowed[0].xy_unreachable);
   near(t.allowed[0].for_z, 19.58), near(t.allowed[3].for_z, 1.531), near(t.allowed[3].for_xy, 8.05);
   near(t.allowed[10].for_z, 0.700), near(t.allowed[15].for_z, 0.320);
-  // What is found leads back to the tolerance: 0.6 m in height at 1:25 000.
+  // What is found leads back to the tolerance: 0.8 m in plan and 0.6 m in height at 1:25 000.
+  constexpr double exact = 2e-4;  // of the tolerance: the search ends at half of it
   for (const auto& [row, which] :
        {std::pair{size_t{3}, no_drift}, {size_t{7}, block_drift}, {size_t{11}, strip_drift}, {size_t{15}, cross_strips}}) {
     TheoryOptions o;
     o.scale = 25000.0;
     o.sigma_station = core::Metres(*t.allowed[row].for_z);
-    EXPECT_NEAR(theory_of(o, which).mu_z, 0.6, half_a_percent * 0.6) << which.name;
+    EXPECT_NEAR(theory_of(o, which).mu_z, 0.6, exact * 0.6) << which.name;
+    o.sigma_station = core::Metres(*t.allowed[row].for_xy);
+    EXPECT_NEAR(theory_of(o, which).mu_xy, 0.8, exact * 0.8) << which.name;
   }
   EXPECT_NE(theory_text(t).find("4 strip drift, cross strips"), std::string::npos);
+}
+
+/// Control of 0.3 m is that at every scale of a demand, not 0.3 m of the block's own.
+TEST(BlockTheory, StatedControlKeepsItsSigmaAtTheDemandsScale) {
+  TheoryOptions o;
+  o.sigma_control = core::Metres(0.3);
+  o.cases = {strip_drift};
+  o.demands = {{"1:25 000", 40000.0, core::Metres(1.5), core::Metres(1.0)}};
+  const AllowedFound a = theory_table(o).allowed.at(0);
+  o.scale = 40000.0;
+  o.sigma_station = core::Metres(a.for_z.value());
+  EXPECT_NEAR(theory_of(o, strip_drift).mu_z, 1.0, 2e-4);
+  o.sigma_station = core::Metres(a.for_xy.value());
+  EXPECT_NEAR(theory_of(o, strip_drift).mu_xy, 1.5, 3e-4);
+}
+
+TEST(BlockTheory, WhatIsNotAskedIsNotMissed) {
+  TheoryOptions o;
+  o.cases = {{"corners", DriftSets::strip, ControlLayout::corners, 0}};
+  o.demands = {{"1:25 000", 40000.0, {}, core::Metres(1.0)}};
+  const AllowedFound a = theory_table(o).allowed.at(0);
+  EXPECT_FALSE(a.xy_unreachable);
+  EXPECT_TRUE(a.z_unreachable);
+  EXPECT_NE(theory_of(o, o.cases[0]).refused.find("strips 1, 2, 3, 4, 5, 6"), std::string::npos);
 }
 
 }  // namespace
