@@ -79,7 +79,9 @@ std::vector<int> depth_first(const std::vector<std::vector<int>>& below, const s
 double cholesky(Eigen::Ref<MatrixXd> A) {
   double smallest = 1.0;
   for (Eigen::Index j = 0; j < A.rows(); ++j) {
-    const double pivot = A(j, j) - A.row(j).head(j).squaredNorm();
+    double squares = 0.0;
+    for (Eigen::Index k = 0; k < j; ++k) squares += A(j, k) * A(j, k);
+    const double pivot = A(j, j) - squares;
     const double used = pivot > least_pivot ? pivot : least_pivot;
     smallest = std::min(smallest, used);
     A(j, j) = std::sqrt(used);
