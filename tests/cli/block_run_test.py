@@ -173,6 +173,9 @@ class BlockRuns(Case):
         text = control.read_text()
         rewrite(control, lambda rows: [{**r, "x": float(r["x"]) + 5000.0} for r in rows])
         self.refused(1, "control points lie up to .* from where the images see them")
+        control.write_text(text)
+        rewrite(control, lambda rows: [{**r, **{k: float(r[k]) / 0.3048 for k in "xyz"}} for r in rows])  # the check points are in metres
+        self.refused(1, "block_control.csv.* control is in feet: 5 of")
         control.write_text(text.replace("control", "other"))
         findings = stage(self.run_block(), "block.adjust")["findings"]
         self.assertIn("no point of block_control.csv is on an image: names differ, or it is the laser's control", findings["findings"])

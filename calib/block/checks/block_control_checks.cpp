@@ -31,6 +31,8 @@ struct Offset {
   double length = 0.0;  ///< m
 };
 
+std::string metres_text(double m) { return std::to_string(static_cast<long>(std::lround(m))) + " m"; }
+
 /// Where the images see each control point, by rays alone, from where it is surveyed.
 std::vector<Offset> control_offsets(const ReadBlock& read, const Change& changed) {
   ImageBlock block = read.block;
@@ -63,12 +65,11 @@ double distance_to_ground(const ImageBlock& block) {
   return std::max(1.0, std::abs(images - points));
 }
 
-std::string metres_text(double m) { return std::to_string(static_cast<long>(std::lround(m))) + " m"; }
-
 struct Explanation {
   const char *what, *hint;
   Change change;
-  double focal = 1.0;  ///< factor on principal distances
+  double focal = 1.0;     ///< factor on principal distances
+  bool of_points = true;  ///< of single control points, which may be those of one file
 };
 
 std::vector<Explanation> explanations() {
@@ -77,12 +78,12 @@ std::vector<Explanation> explanations() {
   };
   const char* const convert = "convert to metres: 1 ft = 0.3048 m";
   return {{"control is in feet", convert, scaled(foot, foot)},
-          {"stations are in feet", convert, scaled(1.0 / foot, 1.0 / foot)},
+          {"stations are in feet", convert, scaled(1.0 / foot, 1.0 / foot), 1.0, false},
           {"heights of control are in feet", convert, scaled(1.0, foot)},
           {"easting and northing of control are exchanged", "exchange x and y of [[control]]",
            [](const Vector3d& p) { return Vector3d(p.y(), p.x(), p.z()); }},
-          {"the principal distance is ten times too small", "check f of [[camera]] and its unit", scaled(1.0, 1.0), 10.0},
-          {"the principal distance is ten times too large", "check f of [[camera]] and its unit", scaled(1.0, 1.0), 0.1}};
+          {"the principal distance is ten times too small", "check f of [[camera]] and its unit", scaled(1.0, 1.0), 10.0, false},
+          {"the principal distance is ten times too large", "check f of [[camera]] and its unit", scaled(1.0, 1.0), 0.1, false}};
 }
 
 double explained(const ReadBlock& read, const Explanation& e, double stated) {
@@ -93,6 +94,34 @@ double explained(const ReadBlock& read, const Explanation& e, double stated) {
     return median_length(control_offsets(other, e.change));
   } catch (const core::Error&) {
     return stated;  // outside the projection
+  }
+}
+
+/// Some of the points have a mistake in common, as those of one file have.
+void refuse_explained(const ReadBlock& read, const std::vector<Offset>& offsets, double limit) {
+  constexpr size_t enough = 3;
+  std::vector<Offset> far;
+  for (const Offset& o : offsets)
+    if (o.length > limit) far.push_back(o);
+  if (far.size() < enough) return;
+  const double stated = median_length(far);
+  for (const Explanation& e : explanations()) {
+    if (!e.of_points) continue;
+    std::vector<Offset> changed;
+    try {
+      changed = control_offsets(read, e.change);
+    } catch (const core::Error&) {
+      continue;  // outside the projection
+    }
+    std::vector<Offset> same;
+    for (size_t k = 0; k < offsets.size(); ++k)
+      if (offsets[k].length > limit) same.push_back(changed[k]);
+    const double found = median_length(same);
+    if (clearly * found < stated && found < limit)
+      throw core::Error(std::string(e.what) + ": " + std::to_string(far.size()) + " of " + std::to_string(offsets.size()) + " points lie " +
+                            metres_text(stated) + " from where the images see them as stated, and " + metres_text(found) +
+                            " without that mistake",
+                        far.front().place, e.hint);
   }
 }
 
@@ -131,6 +160,7 @@ void refuse_far_control(const ReadBlock& read) {
     throw core::Error(std::string(best->what) + ": points lie " + metres_text(least) + " from where the images see them, and " +
                           metres_text(stated) + " as stated",
                       read.control.front().place, best->hint);
+  refuse_explained(read, offsets, limits.far * height);
   refuse_some(offsets, (stated > limits.far_median * height ? limits.far_median : limits.far) * height);
 }
 

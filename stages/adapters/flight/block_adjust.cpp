@@ -73,6 +73,15 @@ void expect_image_points(const Context& context, const BlockStageOptions& o) {
   }
 }
 
+/// Where exposures are listed: the table of images, or the events of a camera.
+fs::path exposures_file(const io::Survey& survey) {
+  if (!survey.images.empty()) return survey.images.front().file;
+  for (const auto& events : survey.events)
+    for (const io::SurveyCamera& camera : survey.cameras)
+      if (events.technique == camera.technique) return events.file;
+  return survey.events.front().file;
+}
+
 calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions& o) {
   const io::Survey& survey = context.survey;
   calib::BlockConfig out;
@@ -87,7 +96,7 @@ calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions
   i.file = context.made("images.csv"), i.correlation = context.made(correlation_file);
   i.angles = calib::ImageAngles::roll_pitch_heading, i.north = calib::ImageNorth::true_north;
   i.stations = o.stations, i.angle_use = o.attitudes;
-  i.place = io::resolve(survey, survey.images.empty() ? survey.events.front().file : survey.images.front().file).string();
+  i.place = io::resolve(survey, exposures_file(survey)).string();
   i.angles_hint =
       "check axes and mounting of [[imu]], or angle_unit and signs of the columns of [[trajectory]], and boresight of [[camera]]";
   i.lacks = "is none of the images that have an orientation";

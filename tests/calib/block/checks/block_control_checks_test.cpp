@@ -25,6 +25,18 @@ TEST(BlockControlChecks, FeetAndExchangedCoordinates) {
   expect_in(test::refusal(m), "easting and northing of control are exchanged");
 }
 
+/// As where one file of several is in feet.
+TEST(BlockControlChecks, SomePointsInFeet) {
+  test::MadeFiles m = made();
+  m.write_angles = true;
+  size_t wrong = 0;
+  for (BlockControl& c : m.block.control)
+    if (c.known[0] && wrong < 3) c.position /= 0.3048, ++wrong;
+  const std::string text = test::refusal(m);
+  expect_in(text, "control is in feet: 3 of " + std::to_string(m.block.control.size()) + " points lie");
+  expect_in(text, "1 ft = 0.3048 m");
+}
+
 TEST(BlockControlChecks, TwoNamesExchanged) {
   test::MadeFiles m = made();
   std::vector<size_t> full;
