@@ -11,9 +11,8 @@ sys.path.insert(0, str(SOURCE / "bench" / "block"))
 from blocks import Block, Camera  # noqa: E402
 
 
-def write(folder, angles=0.01, control=True, **options):
+def write(folder, angles=0.01, control=True, camera=Camera(50.0), **options):
     """Three strips of five images flown to and fro, five control points."""
-    camera = Camera(50.0)
     base, apart = 0.4 * 900.0 * camera.columns * camera.pixel / 50.0, 0.6 * 900.0 * camera.rows * camera.pixel / 50.0
     block = Block(3, camera, [(0 if k % 2 == 0 else 4 * base, k * apart, 90 if k % 2 == 0 else 270, 5, base, 900.0) for k in range(3)])
     block.grid(0.4 * base, 0.3 * base)
@@ -121,6 +120,32 @@ class Mistakes(Case):
         config.write_text(config.read_text().replace('["0.4 m", "-0.3 m", "-1.1 m"]', '["0.4 m", "0.3 m", "-1.1 m"]'))
         done = swath("block", config, "--output", self.folder / "out")
         self.assertRegex(done.stdout, "stations of camera C are on average .* of the stated antenna; the opposite sign of right explains it\n")
+
+    def test_held_values_of_a_camera(self):
+        camera = Camera(50.0, x0=0.021, y0=-0.034, k1=-2.1e-5, k2=1.2e-8, k3=-2e-12)
+        write(self.folder, camera=camera)
+        config = self.folder / "block.toml"
+        text = config.read_text()
+        config.write_text(text.replace("k1 = -2.1e-05", "k1 = 2.1e-05"))
+        self.refused("the distortion has the other sign")
+        for old, new, message in (("", "", None), ('distortion = "ideal"', 'distortion = "measured"', 'fit better with distortion = "ideal"'),
+                                  ('x0 = "0.021 mm"', 'x0 = "-0.021 mm"', "fit better with the opposite sign of x0:"),
+                                  ('y0 = "-0.034 mm"', 'y0 = "0.034 mm"', "fit better with the opposite sign of y0:")):
+            config.write_text(text.replace(old, new))
+            done = swath("block", config, "--output", self.folder / "out")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, "image points of camera C " + message) if message else self.assertNotIn("fit better", done.stdout)
+
+    def test_the_sign_of_a_boresight_with_its_sigma(self):
+        write(self.folder, boresight=(0.005, -0.004, 0.006))
+        config = self.folder / "block.toml"
+        stated = 'boresight = ["0.2865 deg", "-0.2292 deg", "0.3438 deg"]\nsigma = { boresight = "0.02 deg" }\n'
+        text = config.read_text().replace("[[image_points]]", stated + "[[image_points]]")
+        config.write_text(text)
+        self.assertNotIn("boresight", swath("block", config, "--output", self.folder / "out").stdout)
+        config.write_text(text.replace('"0.2865 deg"', '"-0.2865 deg"'))
+        done = swath("block", config, "--output", self.folder / "out")
+        self.assertRegex(done.stdout, "boresight_roll of camera C is 0.2.* deg after the adjustment, .* the opposite sign explains it\n")
 
     def test_heights_of_control_in_feet_without_angles(self):
         write(self.folder, angles=None)

@@ -50,12 +50,19 @@ Mistake with_angles(const OtherAngles& o) {
 
 void add_kinds(ImageAngles kind, ImageNorth north, std::vector<Mistake>& out) {
   const auto same = [](const Triple& v) { return v; };
+  const auto other = [&](const char* what, const char* name, ImageAngles k) {
+    out.push_back(with_angles({what, std::string("state angles = \"") + name + "\"", k, north, same}));
+  };
+  if (kind != ImageAngles::roll_pitch_heading)
+    other("the angles are roll pitch heading of the body, not those of the camera", "roll_pitch_heading", ImageAngles::roll_pitch_heading);
+  else {
+    other("the angles are omega phi kappa of the camera, not roll pitch heading", "omega_phi_kappa", ImageAngles::omega_phi_kappa);
+    other("the angles are phi omega kappa of the camera, not roll pitch heading", "phi_omega_kappa", ImageAngles::phi_omega_kappa);
+  }
   if (kind == ImageAngles::omega_phi_kappa)
-    out.push_back(with_angles({"the angles are phi omega kappa, not omega phi kappa", "state angles = \"phi_omega_kappa\"",
-                               ImageAngles::phi_omega_kappa, north, same}));
+    other("the angles are phi omega kappa, not omega phi kappa", "phi_omega_kappa", ImageAngles::phi_omega_kappa);
   if (kind == ImageAngles::phi_omega_kappa)
-    out.push_back(with_angles({"the angles are omega phi kappa, not phi omega kappa", "state angles = \"omega_phi_kappa\"",
-                               ImageAngles::omega_phi_kappa, north, same}));
+    other("the angles are omega phi kappa, not phi omega kappa", "omega_phi_kappa", ImageAngles::omega_phi_kappa);
 }
 
 void add_signs(ImageAngles kind, ImageNorth north, std::vector<Mistake>& out) {

@@ -5,6 +5,10 @@
 #include "calib/block/checks/antenna_offsets.h"
 #include "calib/block/checks/block_checks.h"
 #include "calib/block/checks/block_sample.h"
+#include "calib/block/checks/held_values.h"
+#include "calib/block/checks/mount_directions.h"
+#include "calib/block/checks/stated_values.h"
+#include "calib/block/checks/wrong_attitudes.h"
 
 namespace swath::calib {
 
@@ -16,8 +20,13 @@ CheckedAdjustment adjust_checked(ReadBlock& read, const BlockConfig& config) {
   if (read.started_level) turn_level_images(read.block);
   out.solution = adjust_block(read.block, config.adjust);
   refuse_wrong_stations(out.stated, read, out.solution, config);
+  refuse_wrong_attitudes(out.stated, read, config);
   out.found = findings_of(read, config, out.solution);
-  for (std::string& sentence : antenna_findings(read.block)) out.found.findings.push_back(std::move(sentence));
+  std::vector<std::string> notes = held_value_findings(read.block, out.solution.weights);
+  if (notes.empty()) notes = antenna_findings(read.block);  // a principal point with the other sign moves images from their antennas
+  for (std::string& sentence : stated_value_findings(out.stated, config, out.found)) notes.push_back(std::move(sentence));
+  for (std::string& sentence : mount_findings(read, config)) notes.push_back(std::move(sentence));
+  for (std::string& sentence : notes) out.found.findings.push_back(std::move(sentence));
   out.found.start_tie = start.tie, out.found.start_control = start.control;
   return out;
 }

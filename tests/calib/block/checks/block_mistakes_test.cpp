@@ -38,6 +38,33 @@ TEST(BlockMistakes, UnitsAndOrderOfAngles) {
   expect_in(refused([](core::Attitude& a) { a.heading = core::pi / 2.0 - a.heading; }), "heading counts counter-clockwise from east");
 }
 
+TEST(BlockMistakes, AnglesOfTheCameraForThoseOfTheBody) {
+  test::Making making = test::small_making();
+  making.boresight.setZero();
+  test::MadeFiles m;
+  m.block = test::make_block(making).given;
+  m.write_angles = true;
+  for (const char* kind : {"omega_phi_kappa", "phi_omega_kappa"}) {
+    // A table with the columns omega, phi and kappa under the names of the others.
+    m.angles = kind, m.stated_angles = "roll_pitch_heading";
+    const test::TemporaryFolder folder;
+    const std::string file = test::write_made(m, folder.path());
+    const BlockConfig config = test::read_made(file);
+    m.angles = m.stated_angles = kind;
+    const test::TemporaryFolder right;
+    const std::string as_is = test::write_made(m, right.path());
+    ReadBlock read = read_block(test::read_made(as_is), as_is);
+    for (const StatedAngles& a : read.angles)
+      set_attitude(read.block, a.image, body_attitude(read, a.image, a.value, ImageAngles::roll_pitch_heading, ImageNorth::grid));
+    try {
+      refuse_mistakes(read, config);
+      FAIL() << kind;
+    } catch (const core::Error& e) {
+      expect_in(e.text(), "kappa of the camera, not roll pitch heading");
+    }
+  }
+}
+
 TEST(BlockMistakes, HeadingsTurnedByQuarters) {
   for (const auto& [by, what] : {std::pair{180.0, "by 180 deg"}, {90.0, "by 90 deg"}, {-90.0, "by -90 deg"}})
     expect_in(refused([turn = by * core::degree](core::Attitude& a) { a.heading += turn; }), std::string("headings are off ") + what);
