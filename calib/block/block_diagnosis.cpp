@@ -207,7 +207,7 @@ void refuse_undetermined(const ImageBlock& block, const LinearBlock& linear, con
     std::set<std::string> names;
     for (const std::uint32_t p : unsound_points) names.insert(block.points[p].name);
     throw core::Error("points without a position, their rays are parallel: " + listed(names), "",
-                      "leave them out, or measure them in more images");
+                      "leave them out, or measure them in more images; one name may be given to two points");
   }
   const auto modes = undetermined_modes(block, linear);
   if (modes.empty())

@@ -11,13 +11,14 @@ sys.path.insert(0, str(SOURCE / "bench" / "block"))
 from blocks import Block, Camera  # noqa: E402
 
 
-def write(folder, angles=0.01, control=True, camera=Camera(50.0), **options):
-    """Three strips of five images flown to and fro, five control points."""
+def write(folder, angles=0.01, control=True, camera=Camera(50.0), images=5, **options):
+    """Three strips of images flown to and fro, five control points."""
     base, apart = 0.4 * 900.0 * camera.columns * camera.pixel / 50.0, 0.6 * 900.0 * camera.rows * camera.pixel / 50.0
-    block = Block(3, camera, [(0 if k % 2 == 0 else 4 * base, k * apart, 90 if k % 2 == 0 else 270, 5, base, 900.0) for k in range(3)])
+    last = images - 1
+    block = Block(3, camera, [(0 if k % 2 == 0 else last * base, k * apart, 90 if k % 2 == 0 else 270, images, base, 900.0) for k in range(3)])
     block.grid(0.4 * base, 0.3 * base)
     names = [f"c{k}" for k in range(5)]
-    for name, (x, y) in zip(names, ((0.2, 0), (3.8, 0), (0.2, 2), (3.8, 2), (2, 1))):
+    for name, (x, y) in zip(names, ((0.2, 0), (last - 0.2, 0), (0.2, 2), (last - 0.2, 2), (last / 2, 1))):
         block.add(name, x * base, y * apart)
     block.write(folder, 0.0027, stations=0.1, angles=angles, control=names if control else None, **options)
 
@@ -146,6 +147,12 @@ class Mistakes(Case):
         config.write_text(text.replace('"0.2865 deg"', '"-0.2865 deg"'))
         done = swath("block", config, "--output", self.folder / "out")
         self.assertRegex(done.stdout, "boresight_roll of camera C is 0.2.* deg after the adjustment, .* the opposite sign explains it\n")
+
+    def test_a_missing_event_without_angles(self):
+        """The strip turns away from its neighbours before it is adjusted."""
+        write(self.folder, angles=None, images=12)
+        change(self.folder / "images.csv", next_station("2", 6))
+        self.refused("the stations of strip 2 from image s2_[78] on are those of the image after")
 
     def test_heights_of_control_in_feet_without_angles(self):
         write(self.folder, angles=None)
