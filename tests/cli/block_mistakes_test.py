@@ -108,7 +108,8 @@ class Mistakes(Case):
                 self.refused(message)
 
     def test_conventions_of_the_config(self):
-        for old, new, message in (('origin = "middle"', 'origin = "corner"', "image points of camera C reach"),
+        for old, new, message in (('origin = "middle"', 'origin = "corner"', "the image points count from the middle of the sensor, not from a corner"),
+                                  ('unit = "mm"', 'unit = "um"', "the image points are in mm, not in um"),
                                   ('f = "50.0 mm"', 'f = "5.0 mm"', "the principal distance is ten times too small")):
             write(self.folder)
             config = self.folder / "block.toml"

@@ -12,6 +12,7 @@
 #include "calib/block/checks/block_mistakes.h"
 #include "calib/block/checks/block_sample.h"
 #include "calib/block/checks/moved_residuals.h"
+#include "calib/block/checks/sensor_reach.h"
 #include "calib/block/checks/shifted_strip.h"
 #include "calib/block/checks/station_bases.h"
 #include "core/error.h"
@@ -27,28 +28,6 @@ std::string shown(double millimetres) {
   char text[40];
   std::snprintf(text, sizeof text, millimetres < 0.1 ? "%.4f mm" : "%.2f mm", millimetres);
   return text;
-}
-
-/// Image points on the sensor, and not on a corner of it.
-void refuse_off_sensor(const ReadBlock& read, const BlockConfig& config) {
-  constexpr double beyond = 1.05, spread = 0.02;  // of half the sensor
-  for (std::uint32_t c = 0; c < config.cameras.size(); ++c) {
-    const CameraConfig& camera = config.cameras[c];
-    if (!camera.pixel || camera.columns <= 0 || camera.rows <= 0) continue;
-    std::vector<double> x, y;
-    for (const ImageRay& r : read.block.rays)
-      if (read.block.images[r.image].camera == c) x.push_back(std::abs(r.x)), y.push_back(std::abs(r.y));
-    if (x.size() < 20) continue;
-    constexpr double most = 0.98;  // of the points: single blunders are the adjustment's
-    const double side = 1e3 * camera.pixel->value, half_x = side * camera.columns / 2.0, half_y = side * camera.rows / 2.0,
-                 far_x = core::quantile(x, most), far_y = core::quantile(y, most);
-    const std::string place = config.image_points.front().file.string(),
-                      reach = "image points of camera " + camera.name + " reach " + shown(far_x) + " in x and " + shown(far_y) +
-                              " in y from the middle, the sensor " + shown(half_x) + " and " + shown(half_y);
-    if (far_x > beyond * half_x || far_y > beyond * half_y)
-      throw core::Error(reach, place, "check unit, origin and pixel, and that columns and rows are not exchanged");
-    if (far_x < spread * half_x && far_y < spread * half_y) throw core::Error(reach, place, "check unit and pixel");
-  }
 }
 
 }  // namespace
