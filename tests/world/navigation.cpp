@@ -16,8 +16,8 @@ const core::Geodetic origin{48 * core::degree, 10.5 * core::degree, 600.0};
 constexpr double eight_radius = 300.0, eight_rate = 0.05;  // m, rad/s of the figure's parameter
 constexpr double ramp = 6.0;                               // s
 
-simulate::PlannedFlight flight_over(const simulate::FlightOptions& options, const simulate::WorldOptions& world) {
-  return {options, origin, 950.0, simulate::plan_lines(options, world, core::degrees(20).value, 0.02), 5.2, 1};
+simulate::PlannedFlight flight_over(const simulate::FlightOptions& options, const simulate::WorldOptions& world, std::int64_t seed = 1) {
+  return {options, origin, 950.0, simulate::plan_lines(options, world, core::degrees(20).value, 0.02), 5.2, seed};
 }
 
 /// Increments over [t - step, t] by Gauss and Legendre with 4 nodes.
@@ -48,6 +48,17 @@ simulate::PlannedFlight straight_flight(double length) {
   options.cross_lines = 0;
   options.line_length = core::Metres(length);
   return flight_over(options, {});
+}
+
+simulate::PlannedFlight craft_flight(double speed, std::int64_t seed) {
+  simulate::FlightOptions options;
+  options.lines = 3;
+  options.cross_lines = 0;
+  options.speed = core::MetresPerSecond(speed);
+  options.wind = core::MetresPerSecond(0.3 * speed);
+  options.line_length = core::Metres(20 * speed);
+  options.lead = core::Seconds(3);
+  return flight_over(options, {}, seed);
 }
 
 MotionAt motion_of(simulate::PlannedFlight flight) {

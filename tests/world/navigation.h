@@ -26,6 +26,8 @@ using MotionAt = std::function<simulate::Motion(double)>;
 simulate::PlannedFlight survey_flight(int lines, int cross_lines = 0);
 /// One line with 5 s before and after it.
 simulate::PlannedFlight straight_flight(double length);
+/// Three lines of 20 s at `speed` (m/s) and 22 deg of bank between them: a slow craft turns by a radian in 2 s. `seed`: of its turbulence.
+simulate::PlannedFlight craft_flight(double speed, std::int64_t seed);
 MotionAt motion_of(simulate::PlannedFlight flight);
 
 /// A car on a level figure of eight, 300 m long, that does not slip: its velocity lies along the vehicle's forward axis.

@@ -42,12 +42,10 @@ void describe(const TimeOffset& r, V& v) {
 ///
 /// Second differences of the fixes over 1, 2 and 4 s on either side, less gravity, are the specific force averaged by a triangle; the same
 /// second differences of the twice integrated increments, lever arm included, are taken at times that lie apart by the offset. The span
-/// whose answer has the smallest sigma is taken: short ones where the vehicle shakes, long ones in flight. Windows of 20 s each have a
-/// rotation, a gyro and an accelerometer bias of their own; the offset is common to all. Coarse: least sum of distances over a grid of
-/// offsets, Wahba's problem solved in each window. Fine: Gauss and Newton with Huber's weights. The sigma is from the scatter of the
-/// windows' own answers (cluster-robust), so that it holds for correlated errors; the lever arm's is added: at one speed an arm along the
-/// track that is off by 1 cm acts as 1 cm / speed. Not determinable: fixes more than 3 s apart, no change of motion (sigma over 20 ms), two
-/// offsets that fit alike, an offset at the search's end. `search`: s, either way.
+/// whose answer has the smallest sigma is taken: short ones where the vehicle shakes, long ones in flight. Coarse: least sum of distances
+/// over a grid of offsets, Wahba's problem solved in each window of 20 s. Fine: fit_clock() (trajectory/clock/clock_fit.h) about that,
+/// twice: the second time with the sensors' errors of the first taken out of the records. Not determinable: fixes more than 3 s apart, no
+/// change of motion (sigma over 20 ms), two offsets that fit alike, an offset at the search's end. `search`: s, either way.
 TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
                             const Eigen::Vector3d& lever_arm, double lever_arm_sigma, double search);
 

@@ -46,54 +46,73 @@ std::vector<Three> threes_of(const core::GnssData& gnss, double half) {
   return out;
 }
 
-/// The IMU's double integral over a window, from identity at its beginning.
+using BySensors = Eigen::Matrix<double, 3, clock_sensor_errors>;
+
+/// The IMU's double integral over a window, from identity at its beginning, and its derivatives by the sensors' errors.
 class Integral {
  public:
-  Integral(const ImuPath& path, double from, double until) {
+  Integral(const ImuPath& path, double from, double until, const ClockSensorErrors& known) {
     ImuWalk walk(path, from);
-    samples_.push_back(
-        {from, Matrix3d::Identity(), Matrix3d::Zero(), Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+    samples_.emplace_back();
+    samples_.back().time = from;
     Increment piece;
     while (walk.next(until, piece)) {
       Sample next = samples_.back();
+      piece.angle = (piece.angle - piece.step * known.segment<3>(0)).cwiseQuotient(Vector3d::Ones() + known.segment<3>(6));
+      piece.velocity = (piece.velocity - piece.step * known.segment<3>(3)).cwiseQuotient(Vector3d::Ones() + known.segment<3>(9));
       const Vector3d push = next.turn * (piece.velocity + 0.5 * piece.angle.cross(piece.velocity));
+      BySensors by;
+      by << -core::skew(push) * next.turned.leftCols<3>(), piece.step * next.turn, -core::skew(push) * next.turned.rightCols<3>(),
+          next.turn * piece.velocity.asDiagonal();
       samples_.back().force = push / piece.step;
       next.way += piece.step * (next.speed + 0.5 * push);
       next.speed += push;
-      next.drift += piece.step * next.turn;
-      next.scale += next.turn * piece.angle.asDiagonal();
+      next.way_by += piece.step * (next.speed_by + 0.5 * by);
+      next.speed_by += by;
+      next.turned.leftCols<3>() += piece.step * next.turn;
+      next.turned.rightCols<3>() += next.turn * piece.angle.asDiagonal();
       next.turn = next.turn * core::exp_so3(piece.angle);
       next.time = walk.time();
       samples_.push_back(next);
     }
   }
-  Matrix3d turn(double t) const { return at(t).turn; }
-  Matrix3d drift(double t) const { return at(t).drift; }
-  Matrix3d scale(double t) const { return at(t).scale; }
+  /// What a gyro's bias and what its scale factors turn until then.
+  const Eigen::Matrix<double, 3, 6>& turned(double t) const { return at(t).turned; }
   /// Twice integrated specific force and the turned lever arm.
   Vector3d place(double t, const Vector3d& lever) const {
     const Sample& s = at(t);
     const double d = t - s.time;
-    const Sample& next = *std::min(&s + 1, &samples_.back());
-    const double share = next.time > s.time ? d / (next.time - s.time) : 0.0;
-    return s.way + d * s.speed + 0.5 * d * d * s.force + (s.turn + share * (next.turn - s.turn)) * lever;
+    return s.way + d * s.speed + 0.5 * d * d * s.force + (s.turn + share(s, t) * (after(s).turn - s.turn)) * lever;
+  }
+  /// Its derivatives by the sensors' errors, without those of the turned arm.
+  BySensors place_by(double t) const {
+    const Sample& s = at(t);
+    return s.way_by + share(s, t) * (after(s).way_by - s.way_by);
   }
 
  private:
   struct Sample {
-    double time;
-    Matrix3d turn, drift, scale;
-    Vector3d speed, way, force;
+    double time = 0.0;
+    Matrix3d turn = Matrix3d::Identity();
+    Eigen::Matrix<double, 3, 6> turned = Eigen::Matrix<double, 3, 6>::Zero();  // of the body, by gyro bias (s) and gyro scale factor
+    Vector3d speed = Vector3d::Zero(), way = Vector3d::Zero(), force = Vector3d::Zero();
+    BySensors speed_by = BySensors::Zero(), way_by = BySensors::Zero();
   };
   const Sample& at(double t) const {
-    auto after = std::upper_bound(samples_.begin(), samples_.end(), t, [](double x, const Sample& s) { return x < s.time; });
-    return after == samples_.begin() ? samples_.front() : *(after - 1);
+    auto later = std::upper_bound(samples_.begin(), samples_.end(), t, [](double x, const Sample& s) { return x < s.time; });
+    return later == samples_.begin() ? samples_.front() : *(later - 1);
   }
-  std::vector<Sample> samples_;
+  const Sample& after(const Sample& s) const { return *std::min(&s + 1, &samples_.back()); }
+  double share(const Sample& s, double t) const {
+    const double step = after(s).time - s.time;
+    return step > 0 ? (t - s.time) / step : 0.0;
+  }
+  std::vector<Sample, Eigen::aligned_allocator<Sample>> samples_;
 };
 
 /// (c - b) / h2 - (b - a) / h1 over their mean step.
-Vector3d second_difference(const Vector3d& a, const Vector3d& b, const Vector3d& c, double h1, double h2) {
+template <class V>
+V second_difference(const V& a, const V& b, const V& c, double h1, double h2) {
   return ((c - b) / h2 - (b - a) / h1) / (0.5 * (h1 + h2));
 }
 
@@ -107,31 +126,33 @@ Vector3d force_of(const core::GnssData& g, const Three& f) {
 }
 
 ClockWindow window_of(const ImuPath& path, const core::GnssData& g, const std::vector<Three>& all, size_t first, size_t last,
-                      const Vector3d& lever, double search, size_t offsets) {
+                      const Vector3d& lever, const ClockGrid& grid, const ClockSensorErrors& known) {
   ClockWindow out;
-  const double from = g.time[all[first].a] - search - 2 * clock_grid, until = g.time[all[last - 1].c] + search + 2 * clock_grid;
+  const double from = g.time[all[first].a] + grid.at(0) - 2 * clock_grid,
+               until = g.time[all[last - 1].c] + grid.at(grid.offsets - 1) + 2 * clock_grid;
   if (from < path.begin() || until > path.end() || path.bridged_within(from, until).seconds > 0) return out;
-  const Integral integral(path, from, until);
+  const Integral integral(path, from, until, known);
   const double middle = 0.5 * (g.time[all[first].b] + g.time[all[last - 1].b]);
+  const Eigen::Matrix<double, 3, 6>& turned = integral.turned(middle + grid.middle);
   const core::Geodetic place = core::geodetic_of(g.position[all[(first + last) / 2].b]);
   const Matrix3d ned_R_ecef = core::ecef_R_ned(place.latitude, place.longitude).transpose();
   for (size_t n = first; n < last; ++n) {
     const Three& f = all[n];
-    const double time = g.time[f.b] - middle;
-    ClockTriple t;
-    t.time = time;
-    const Matrix3d inertial = Eigen::AngleAxisd(core::wgs84::omega * time, Vector3d::UnitZ()).toRotationMatrix();
-    t.force = ned_R_ecef * inertial * force_of(g, f);
-    t.turn = integral.turn(g.time[f.b]);
-    t.drift = integral.drift(g.time[f.b]) - integral.drift(middle);
-    t.scale = integral.scale(g.time[f.b]) - integral.scale(middle);
-    t.sensed.resize(offsets);
     const double h1 = g.time[f.b] - g.time[f.a], h2 = g.time[f.c] - g.time[f.b];
-    for (size_t i = 0; i < offsets; ++i) {
-      const double offset = (static_cast<double>(i) - 0.5 * static_cast<double>(offsets - 1)) * clock_grid;
+    ClockTriple t;
+    const Matrix3d inertial = Eigen::AngleAxisd(core::wgs84::omega * (g.time[f.b] - middle), Vector3d::UnitZ()).toRotationMatrix();
+    t.force = ned_R_ecef * inertial * force_of(g, f);
+    t.sensed.resize(grid.offsets);
+    for (size_t i = 0; i < grid.offsets; ++i) {
+      const double offset = grid.at(i);
       t.sensed[i] = second_difference(integral.place(g.time[f.a] + offset, lever), integral.place(g.time[f.b] + offset, lever),
                                       integral.place(g.time[f.c] + offset, lever), h1, h2);
     }
+    t.by_sensors = second_difference(integral.place_by(g.time[f.a] + grid.middle), integral.place_by(g.time[f.b] + grid.middle),
+                                     integral.place_by(g.time[f.c] + grid.middle), h1, h2);
+    const Matrix3d across = core::skew(t.sensed[grid.offsets / 2]);
+    t.by_sensors.leftCols<3>() += across * turned.leftCols<3>();
+    t.by_sensors.middleCols<3>(6) += across * turned.rightCols<3>();
     out.triples.push_back(std::move(t));
     out.speed += (g.position[f.c] - g.position[f.a]).norm() / (h1 + h2) / static_cast<double>(last - first);
   }
@@ -152,8 +173,8 @@ double liveliness(const core::GnssData& g, const std::vector<Three>& all, size_t
 
 }  // namespace
 
-std::vector<ClockWindow> clock_windows(const ImuPath& path, const core::GnssData& g, const Vector3d& lever, double search, double step,
-                                       double half_span, size_t offsets) {
+std::vector<ClockWindow> clock_windows(const ImuPath& path, const core::GnssData& g, const Vector3d& lever, double step, double half_span,
+                                       const ClockGrid& grid, const ClockSensorErrors& known) {
   const double length = window_length * std::max(1.0, step);
   const std::vector<Three> all = threes_of(g, std::max(half_span, step));
   struct Stretch {
@@ -170,9 +191,9 @@ std::vector<ClockWindow> clock_windows(const ImuPath& path, const core::GnssData
   size_t cells = 0;
   for (const Stretch& s : stretches) {
     if (cells > most_cells) break;
-    ClockWindow w = window_of(path, g, all, s.first, s.last, lever, search, offsets);
+    ClockWindow w = window_of(path, g, all, s.first, s.last, lever, grid, known);
     if (w.triples.empty()) continue;
-    cells += w.triples.size() * offsets;
+    cells += w.triples.size() * (grid.offsets + clock_sensor_errors);
     out.push_back(std::move(w));
   }
   return out;
