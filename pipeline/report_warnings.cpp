@@ -22,8 +22,8 @@ using core::Value;
 
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
-                           contours_code = "contours.short", scale_code = "crs.scale", outside_code = "crs.outside",
-                           fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise", events_code = "events.outside",
+                           contours_code = "contours.short", interval_code = "contours.interval", scale_code = "crs.scale",
+                           outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise", events_code = "events.outside",
                            sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
                            duplicates_code = "clouds.duplicates";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
@@ -137,6 +137,10 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
                                      "lines are shorter than contours.min_length or enclose") +
                        " less than contours.min_area",
                    {{"left_out", left_out->as_number(), {}}}});
+  const Value *map_class = findings.find("map_class"), *said = findings.find("findings");
+  if (stage == "terrain.contours" && map_class && map_class->as_text() == "none" && said && !said->items().empty())
+    out.push_back(
+        {std::string(interval_code), said->items().front().as_text(), {{"model_sigma", findings.find("model_sigma_m")->as_number(), "m"}}});
   if (stage == "terrain.buildings" && returns && returns->as_int() == 0)
     out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
 }

@@ -34,6 +34,8 @@ const std::vector<WarningKind>& warning_kinds() {
       {"clouds.same_file", "Two clouds of the run hold the same bytes under two names: their points are there twice.",
        "Name one of them, or take the copy out of the folder; density and every count of points are too large with it."},
       {"contours.short", "Every contour is shorter than contours.min_length or encloses less than contours.min_area: none is written.",
+      {"contours.interval", "Contours lie closer than the sigma of the terrain model supports, in any class of maps.",
+       "State a larger interval: the sentence names those that the model carries. What lies below shows the noise of the model."},
        "State them for the size of the area and the interval: --set contours.min_length=\"1 m\"."},
       {"control.unused", "A [[control]] of the survey is used by no stage of the run.",
        "Add a stage that uses it (quality.points for check points, calib.adjust for control), or leave it out of the survey."},

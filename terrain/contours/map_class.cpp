@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terrain/contours/map_class.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -32,6 +33,8 @@ SurfaceFacts& SurfaceFacts::operator+=(const SurfaceFacts& o) {
   heights += o.heights;
   sigmas += o.sigmas;
   beyond += o.beyond;
+  lowest = std::min(lowest, o.lowest);
+  highest = std::max(highest, o.highest);
   return *this;
 }
 
@@ -44,6 +47,8 @@ SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double i
       if (std::isnan(grid.height[at])) continue;
       f.sum_of_heights += grid.height[at];
       ++f.heights;
+      f.lowest = std::min<double>(f.lowest, grid.height[at]);
+      f.highest = std::max<double>(f.highest, grid.height[at]);
       if (grid.sigma.empty() || std::isnan(grid.sigma[at])) continue;
       const double sigma = grid.sigma[at];
       f.sum_of_variances += sigma * sigma;
@@ -52,6 +57,18 @@ SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double i
     }
   return f;
 }
+
+std::string too_many_levels(const SurfaceFacts& f, double interval, double unit) {
+  const double levels = std::floor((f.highest - f.lowest) / interval);
+  if (!(levels > max_levels)) return {};
+  const std::string name = unit == 1.0 ? " m" : " ft";
+  const auto height = [&](double h) { return core::format_number(std::round(h / unit * 10) / 10); };
+  return "contours every " + core::format_number(interval / unit, 4) + name + " between heights of " + height(f.lowest) + " and " +
+         height(f.highest) + name + " are " + core::format_number(levels) + " levels, and at most " + core::format_number(max_levels) +
+         " are drawn";
+}
+
+double least_interval(const SurfaceFacts& f, double unit) { return unit * usual_interval((f.highest - f.lowest) / max_levels / unit); }
 
 CarriedInterval judge_interval(const SurfaceFacts& f, double interval, double flying_height, double unit) {
   CarriedInterval out;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,10 +38,21 @@ struct SurfaceFacts {
   double sum_of_heights = 0.0, sum_of_variances = 0.0;
   std::uint64_t heights = 0, sigmas = 0;
   std::uint64_t beyond = 0;  ///< cells whose own sigma keeps no class of maps at the interval
+  double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
   SurfaceFacts& operator+=(const SurfaceFacts& o);
 };
 /// Of the cells of `own`, a part of the grid's lattice.
 SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double interval);
+
+/// Contour levels that one map may have: a relief of 4 km every 20 cm. What asks for more has mistaken a unit, and fills the disk.
+inline constexpr double max_levels = 20'000;
+
+/// Says, with the heights and the number of levels, that contours every `interval` (m) are more than max_levels; empty where they are not.
+/// `unit`: of heights in words, m.
+std::string too_many_levels(const SurfaceFacts& facts, double interval, double unit);
+
+/// The least usual interval (m) that max_levels allow; `unit`: as above.
+double least_interval(const SurfaceFacts& facts, double unit);
 
 /// The smallest interval of each class, m.
 struct ClassIntervals {

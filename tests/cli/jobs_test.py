@@ -58,6 +58,12 @@ class Jobs(Case):
             self.assertRegex(saved.read_text(), rf'min_length = "{length} ?m"', done.stderr)
             self.assertEqual("contours.short" in done.stdout + done.stderr, length == "500", done.stdout + done.stderr)
 
+    def test_contours_by_the_micrometre_are_refused(self):
+        done = swath("dtm", self.files[0], "-o", self.out, "--contours", "0.01mm", "--crs", "EPSG:32632")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, r"--contours 0\.01mm: contours every 1e-05 m between heights of [\d.]+ and [\d.]+ m are \d+ levels")
+        self.assertIn("hint: state an interval of ", done.stderr)
+
     def test_a_pipeline_of_pdal_is_what_our_own_stages_give(self):
         pipeline = self.folder / "x.json"
         pipeline.write_text("""{"pipeline": ["%s/*.las", {"type": "filters.smrf", "cell": 1.5}, {"type": "filters.range", "limits": "Classification[2:2]"},

@@ -132,6 +132,31 @@ TEST(RasterStages, ContoursTellOfDamagedIntermediateFiles) {
   EXPECT_NE(fault_of(merge).find("0_0.segments"), std::string::npos);
 }
 
+TEST(RasterStages, ContoursByTheMillimetreAreRefused) {
+  Work w;
+  w.context.tile_side = 10.0;
+  w.grids.made[Product::dtm] = [](double x, double y, float& height, core::Void& reason) {
+    height = static_cast<float>(2.0 * x);
+    reason = core::Void::none;
+  };
+  const fs::path folder = w.folder / "contours";
+  const std::string said = fault_of([&] { w.run(*stage_with("terrain.contours", "interval = \"0.5 mm\""), {}, 0, 0, folder); });
+  EXPECT_NE(said.find("contours.interval: contours every 0.0005 m between heights of "), std::string::npos) << said;
+  EXPECT_FALSE(fs::exists(folder / "0_0.segments"));
+  // One tile alone is drawn at 1 mm, two are too much.
+  const auto stage = stage_with("terrain.contours", "interval = \"1 mm\"");
+  EXPECT_EQ(fault_of([&] {
+              w.run(*stage, {}, 0, 0, folder);
+              w.run(*stage, {}, 1, 0, folder);
+            }),
+            "");
+  EXPECT_NE(fault_of([&] {
+              MergeJob job{folder, {{0, 0}, {1, 0}}, {}};
+              stage->run_merge(w.context, job);
+            }).find("levels"),
+            std::string::npos);
+}
+
 TEST(RasterStages, BreaklinesTellOfDamagedIntermediateFiles) {
   Work w;
   test::write_bytes(w.folder / "lake.geojson",

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/paste.h"
 #include "core/statistics.h"
@@ -262,6 +263,16 @@ struct ContourRun {
   }
 };
 
+/// Of one tile before its lines fill the disk, and of all tiles before they are drawn.
+void refuse_too_many_levels(const terrain::SurfaceFacts& facts, double interval, const Context& context) {
+  const std::string fault = terrain::too_many_levels(facts, interval, context.vertical_unit);
+  if (fault.empty()) return;
+  const double least = terrain::least_interval(facts, context.vertical_unit), unit = context.vertical_unit;
+  throw core::usage_error(fault, "contours.interval",
+                          "state an interval of " + core::format_number(least / unit, 3) + (unit == 1.0 ? " m" : " ft") +
+                              " or more; maps have 0.25 m to 10 m, and what lies below the model's sigma shows its noise");
+}
+
 ContourCounts trace_contours(const TileJob& job, const Context& context, const ContourWriteOptions& o, RunCache& cache) {
   const ContourRun run{context, o};
   core::Lattice own = lattice_in(run.cell(), job.box);
@@ -287,6 +298,7 @@ ContourCounts trace_contours(const TileJob& job, const Context& context, const C
     own = core::common_part(own, part);
   }
   const terrain::SurfaceFacts facts = terrain::facts_of(grid, own, run.interval());
+  refuse_too_many_levels(facts, run.interval(), context);
   write_rows(piece_file(job.folder, job.key, "facts"), std::vector{facts}, terrain::spot_heights(grid, own, o.spots));
   const terrain::ContourOptions drawn = run.spaced();
   const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
@@ -302,6 +314,7 @@ ContourFindings draw_contours(const MergeJob& job, const Context& context, const
   for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "facts"), tiles, spots);
   terrain::SurfaceFacts facts;
   for (const terrain::SurfaceFacts& t : tiles) facts += t;
+  refuse_too_many_levels(facts, run.interval(), context);
   ContourFindings found;
   run.write_lines(job, files, found);
   run.write_spots(std::move(spots), files, found);

@@ -63,5 +63,22 @@ TEST(MapClass, AModelsSigmaJudgesTheInterval) {
   EXPECT_NE(finer.findings[0].find("contours every 0.5 m say more"), std::string::npos) << finer.findings[0];
 }
 
+TEST(MapClass, TooManyLevelsAreNamedWithTheirHeights) {
+  core::Grid grid(core::Lattice{1.0, 0, 0, 2, 1});
+  grid.height = {512.3f, 561.2f};
+  SurfaceFacts low = facts_of(grid, {1.0, 0, 0, 1, 1}, 1.0);
+  const SurfaceFacts high = facts_of(grid, {1.0, 1, 0, 1, 1}, 1.0);
+  EXPECT_EQ(too_many_levels(low, 1e-6, 1.0), "");  // one height alone
+  low += high;
+  EXPECT_EQ(too_many_levels(low, 0.0025, 1.0), "");  // 19 560
+  const std::string said = too_many_levels(low, 0.001, 1.0);
+  EXPECT_NE(said.find("contours every 0.001 m between heights of 512.3 and 561.2 m are 489"), std::string::npos) << said;
+  EXPECT_NEAR(least_interval(low, 1.0), 0.0025, 1e-9);
+  EXPECT_EQ(too_many_levels(low, least_interval(low, 1.0), 1.0), "");
+  const std::string feet = too_many_levels(low, 0.0003048, 0.3048);
+  EXPECT_NE(feet.find("every 0.001 ft between heights of 1680.8 and 1841.2 ft"), std::string::npos) << feet;
+  EXPECT_EQ(too_many_levels({}, 0.001, 1.0), "");  // no height at all
+}
+
 }  // namespace
 }  // namespace swath::terrain
