@@ -2,7 +2,9 @@
 // What algorithms and readers report besides their result: named counts with first examples.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +29,16 @@ void describe(const RecordCount& r, V& v) {
   v.result("left_out", r.left_out, "The others; under `tally` by reason, in the entries that begin with the kind and end in \"left out\".");
 }
 
+/// Records of one file that share a fate: how many, and the times of the first and the last of them, GPS time s.
+struct FileTimes {
+  std::uint64_t n = 0;
+  double first = std::numeric_limits<double>::infinity(), last = -std::numeric_limits<double>::infinity();
+
+  void add(double time) { ++n, first = std::min(first, time), last = std::max(last, time); }
+  void add(const FileTimes& o) { n += o.n, first = std::min(first, o.first), last = std::max(last, o.last); }
+  bool operator==(const FileTimes&) const = default;
+};
+
 /// Counts of anomalies and of work done, each with up to `examples_kept` first examples ("record 17: range NaN").
 class Tally {
  public:
@@ -37,6 +49,10 @@ class Tally {
     Entry& e = entries_[what];
     e.n += n;
     if (e.examples.size() < examples_kept) e.examples.push_back(example);
+  }
+  /// When records that are counted under `what` were taken, by file.
+  void add_times(const std::string& what, const std::string& file, const FileTimes& times) {
+    if (times.n > 0) entries_[what].files[file].add(times);
   }
   /// Records of a kind ("IMU records") that a file holds. Those that are left out are counted under names that begin with the kind and end
   /// in "left out".
@@ -82,6 +98,7 @@ class Tally {
       Entry& mine = entries_[what];
       mine.n += e.n;
       for (const auto& [line, n] : e.lines) mine.lines[line] += n;
+      for (const auto& [file, times] : e.files) mine.files[file].add(times);
       for (const std::string& x : e.examples)
         if (mine.examples.size() < examples_kept) mine.examples.push_back(x);
     }
@@ -91,13 +108,16 @@ class Tally {
     }
   }
   bool empty() const { return entries_.empty(); }
-  /// {"what": {"count": n, "lines": [{"line": 1, "count": n}, ...], "examples": [...]}}, sorted by name.
+  /// {"what": {"count": n, "lines": [{"line": 1, "count": n}, ...], "files": [{"file": "a.las", "count": n, "first_s": t, "last_s": t},
+  /// ...], "examples": [...]}}, sorted by name.
   Value value() const {
     Value out = Value::object();
     for (const auto& [what, e] : entries_) {
       Value& one = out[what];
       one["count"] = e.n;
       for (const auto& [line, n] : e.lines) one["lines"].push(Value(Value::Object{{"line", line}, {"count", n}}));
+      for (const auto& [file, t] : e.files)
+        one["files"].push(Value(Value::Object{{"file", file}, {"count", t.n}, {"first_s", t.first}, {"last_s", t.last}}));
       if (!e.examples.empty()) {
         one["examples"] = Value::array();
         for (const std::string& x : e.examples) one["examples"].push(x);
@@ -113,6 +133,10 @@ class Tally {
       if (const Value* lines = one.find("lines"))
         for (const Value& l : lines->items())
           e.lines[static_cast<int>(l.find("line")->as_int())] = static_cast<std::uint64_t>(l.find("count")->as_int());
+      if (const Value* files = one.find("files"))
+        for (const Value& f : files->items())
+          e.files[f.find("file")->as_text()] = {static_cast<std::uint64_t>(f.find("count")->as_int()), f.find("first_s")->as_number(),
+                                                f.find("last_s")->as_number()};
       if (const Value* x = one.find("examples"))
         for (const Value& item : x->items()) e.examples.push_back(item.as_text());
     }
@@ -123,6 +147,7 @@ class Tally {
   struct Entry {
     std::uint64_t n = 0;
     std::map<int, std::uint64_t> lines;
+    std::map<std::string, FileTimes> files;
     std::vector<std::string> examples;
   };
   struct Records {

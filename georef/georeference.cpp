@@ -306,6 +306,7 @@ void make_room(core::Block& out, const core::Shots& shots, bool with_sigma, size
 Counts& Counts::operator+=(const Counts& o) {
   georeferenced += o.georeferenced;
   outside += o.outside;
+  outside_times.add(o.outside_times);
   no_range += o.no_range;
   no_beam += o.no_beam;
   no_map += o.no_map;
@@ -366,6 +367,7 @@ Counts Georeferencer::run(const core::Shots& shots, core::Block& out) const {
     if (c.n == chunk_size || (c.n > 0 && !(t >= cursor.interval().start && t < cursor.interval().end))) finish_chunk();
     if (!(std::isfinite(t) && cursor.seek(t))) {
       ++counts.outside;
+      if (std::isfinite(t)) counts.outside_times.add(t);
       continue;
     }
     c.row[c.n] = i;

@@ -8,6 +8,7 @@
 #include "core/block.h"
 #include "core/config/result.h"
 #include "core/records/sensor.h"
+#include "core/report.h"
 #include "core/shot.h"
 #include "georef/correlated_errors.h"
 #include "georef/map_patch.h"
@@ -19,10 +20,11 @@ namespace swath::georef {
 /// What became of the returns: their sum is the number of returns given.
 struct Counts {
   std::uint64_t georeferenced = 0;
-  core::LeftOut outside;   ///< time in no span of the trajectory (or not a number)
-  core::LeftOut no_range;  ///< range not a number, or not above zero (recorded or calibrated)
-  core::LeftOut no_beam;   ///< scan angle not a number, or `forward` beyond +-1
-  core::LeftOut no_map;    ///< no coordinates in the map's CRS
+  core::LeftOut outside;            ///< time in no span of the trajectory (or not a number)
+  core::FileTimes outside_times{};  ///< when those with a finite time were
+  core::LeftOut no_range;           ///< range not a number, or not above zero (recorded or calibrated)
+  core::LeftOut no_beam;            ///< scan angle not a number, or `forward` beyond +-1
+  core::LeftOut no_map;             ///< no coordinates in the map's CRS
 
   Counts& operator+=(const Counts& o);
   bool operator==(const Counts&) const = default;

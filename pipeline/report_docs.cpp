@@ -26,6 +26,16 @@ void describe(const LineCount&, V& v) {
   v.result("count", std::uint64_t{0}, "Records of it.");
 }
 
+struct FileCount {};
+
+template <class V>
+void describe(const FileCount&, V& v) {
+  v.result("file", std::string{}, "Name of the file.");
+  v.result("count", std::uint64_t{0}, "Records of it.");
+  v.result("first_s", 0.0, "Time of the first of them, GPS time.");
+  v.result("last_s", 0.0, "Time of the last of them, GPS time.");
+}
+
 /// A count under `tally`.
 struct CountedSample {};
 
@@ -33,6 +43,7 @@ template <class V>
 void describe(const CountedSample&, V& v) {
   v.result("count", std::uint64_t{0}, "Number of records.");
   v.tables_if(false, "lines", std::vector<LineCount>{}, "The count by flight line.");
+  v.tables_if(false, "files", std::vector<FileCount>{}, "The count by file, with times.");
   v.result("examples", std::vector<std::string>{}, "The first of them.");
 }
 

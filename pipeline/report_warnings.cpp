@@ -10,6 +10,7 @@
 
 #include "core/config/units.h"
 #include "core/printable.h"
+#include "core/time.h"
 #include "io/las/las_box.h"
 #include "io/las/las_ending.h"
 #include "pipeline/engine/map_fit.h"
@@ -23,13 +24,16 @@ using core::Value;
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
                            contours_code = "contours.short", interval_code = "contours.interval", scale_code = "crs.scale",
-                           outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise", events_code = "events.outside",
-                           sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
-                           duplicates_code = "clouds.duplicates";
+                           outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise",
+                           events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
+                           duplicates_code = "clouds.duplicates", unflown_code = "laser.outside_trajectory",
+                           no_line_code = "laser.outside_lines";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
-constexpr double warned_duplicates = 1e-3;  // of the first returns
-constexpr double warned_noise = 30.0;       // times the stated noise
+constexpr double warned_duplicates = 1e-3;                     // of the first returns
+constexpr double warned_noise = 30.0;                          // times the stated noise
+constexpr double warned_unflown = 0.01, warned_no_line = 0.2;  // of the records; surveys that scan in turns have many outside the lines
+constexpr size_t files_named = 3;
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -68,6 +72,46 @@ void add_crs(const Value& crs, std::vector<Warning>& out) {
     out.push_back({std::string(outside_code), outside_warning(name, outside->as_number()), {{"outside", outside->as_number(), "deg"}}});
 }
 
+std::string one_decimal(double v) { return core::format_number(std::round(v * 10) / 10); }
+
+/// "flight1.las: 4120 from 2026-06-07T11:40:06.002Z to 2026-06-07T11:40:31.400Z".
+std::string times_by_file(const Value& counted) {
+  const Value* files = counted.find("files");
+  if (!files) return {};
+  std::string out;
+  size_t named = 0;
+  for (const Value& f : files->items()) {
+    if (++named > files_named) return out + "; and " + core::counted(files->items().size() - files_named, "more file") + ": report.json";
+    const auto time = [&](const char* key) { return core::utc_text(f.find(key)->as_number()); };
+    out += (out.empty() ? ": " : "; ") + f.find("file")->as_text() + ": " + std::to_string(f.find("count")->as_int()) + " from " +
+           time("first_s") + " to " + time("last_s");
+  }
+  return out;
+}
+
+/// Records of the laser that neither trajectory nor lines cover, where they are many.
+void add_uncovered(const Value& stage, std::vector<Warning>& out) {
+  const Value* tally = stage.find("tally");
+  const auto add = [&](const char* key, double all, double warned, std::string_view code, const std::string& what) {
+    const Value* counted = tally ? tally->find(key) : nullptr;
+    const double n = counted ? counted->find("count")->as_number() : 0.0;
+    if (!(all > 0.0) || !(n > warned * all)) return;
+    out.push_back({std::string(code),
+                   core::format_number(n) + " of " + core::format_number(all) + " " + what + " (" + one_decimal(100.0 * n / all) +
+                       " %) and are left out" + times_by_file(*counted),
+                   {{"share", n / all, {}}, {"records", n, {}}}});
+  };
+  if (const Value* counts = stage.find("counts"))
+    add("outside the trajectory, left out", counts->find("in")->as_number(), warned_unflown, unflown_code,
+        "returns lie outside the trajectory or in its gaps");
+  const Value* records = stage.find("type")->as_text() == "readers.laser" ? stage.find("records") : nullptr;
+  if (!records) return;
+  for (const Value& r : records->items())
+    if (r.find("name")->as_text() == "records")
+      add("records outside every line, left out", r.find("read")->as_number(), warned_no_line, no_line_code,
+          "laser records lie outside all flight lines");
+}
+
 /// The sentences of what is named are the last ones.
 void add_geometry(const Value& geometry, std::vector<Warning>& out) {
   const Value* named = geometry.find("named");
@@ -76,8 +120,6 @@ void add_geometry(const Value& geometry, std::vector<Warning>& out) {
   for (size_t k = 0; k < sentences.size(); ++k)
     out.push_back({std::string(k + mistakes < sentences.size() ? geometry_code : mistake_code), sentences[k].as_text(), {}});
 }
-
-std::string one_decimal(double v) { return core::format_number(std::round(v * 10) / 10); }
 
 /// Records that do not fit one another, beyond what outliers and vibration do.
 void add_trajectory(const Value& findings, std::vector<Warning>& out) {
@@ -156,6 +198,7 @@ std::vector<Warning> warnings_in(const Value& report) {
                                  "pieces of an earlier run were damaged and were done again"),
                    {{"pieces", damaged->as_number(), {}}}});
   if (const Value* inputs = report.find("inputs")) add_same_files(*inputs, out);
+  for (const Value& stage : report.find("stages")->items()) add_uncovered(stage, out);
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))
       if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);

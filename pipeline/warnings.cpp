@@ -52,6 +52,11 @@ const std::vector<WarningKind>& warning_kinds() {
       {"geometry.mistake", "A usual mistake in the description of the survey explains the contradictions.",
        "The sentence ends with what to change in survey.toml; run again and compare."},
       {"limit.contradictions", "quality.geometry has more warnings than run.limits.contradictions allows.",
+      {"laser.outside_lines", "More than 20 % of the laser records lie outside all flight lines: they are left out.",
+       "Compare start and end of the [[line]]s, and line_time, with the records' times: `swath info` of the file; turns that were scanned "
+       "belong to no line, and this is right for them."},
+      {"laser.outside_trajectory", "More than 1 % of the returns lie outside the trajectory, or in its gaps: they are left out.",
+       "Compare the times of laser and trajectory with `swath info`; a trajectory that ends early or has gaps needs its missing records."},
        "Resolve the warnings of the geometry, or raise the limit."},
       {"limit.line_difference", "Lines differ on smooth ground by more than run.limits.line_difference.",
        "Check calibration and trajectory (quality.geometry, calib.adjust), or raise the limit."},

@@ -99,6 +99,7 @@ def report_types():
     c = Classes()
     count = c.add("Count", {"count": {"type": "integer", "description": "Number of records."},
                             "lines": {"type": "array", "description": "The count by flight line."},
+                            "files": {"type": "array", "description": "The count by file, with times."},
                             "examples": {"type": "array", "items": {"type": "string"}, "description": "The first of them."}},
                   "A count under `tally` of a stage.")
     every = schema["properties"]["stages"]["items"]["anyOf"]

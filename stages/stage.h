@@ -148,6 +148,7 @@ struct Context {
 /// A batch of one strip on its way: raw shots first, a block after georeferencing.
 struct StripBatch {
   int line = 0;
+  size_t source = 0;  ///< index in the survey's [[laser]] or [[points]]
   core::Shots shots;
   core::Block block;
 };

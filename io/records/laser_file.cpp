@@ -130,8 +130,8 @@ struct Pass {
   std::vector<StripInfo> strips;
   std::vector<std::uint64_t> bad;  ///< rows without a time or line that can be theirs
   std::uint64_t records = 0, unreadable = 0, wild = 0;
-  double first_outside = std::numeric_limits<double>::infinity(), last_outside = -first_outside;  ///< times of records outside every line
-  std::optional<core::Error> first;                                                               ///< that is not readable
+  core::FileTimes outside;           ///< of records outside every line
+  std::optional<core::Error> first;  ///< that is not readable
   core::Tally tally;
 };
 
@@ -184,7 +184,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
       }
       if (line < 0) {
         out.tally.count("records outside every line, left out", f.file.filename().string() + ": " + record_text(r.record[i]));
-        out.first_outside = std::min(out.first_outside, time), out.last_outside = std::max(out.last_outside, time);
+        out.outside.add(time);
         continue;
       }
       if (out.strips.empty() || out.strips[last].line != line) {
@@ -216,7 +216,8 @@ std::vector<StripInfo> strips_of(const Survey& survey, size_t file, core::Tally&
   if (pass.first && !are_few(pass.unreadable, pass.records)) throw *pass.first;
   tally.read(laser_records, pass.records);
   tally.add(pass.tally);
-  outside.first = std::min(outside.first, pass.first_outside), outside.last = std::max(outside.last, pass.last_outside);
+  tally.add_times("records outside every line, left out", f.file.filename().string(), pass.outside);
+  outside.first = std::min(outside.first, pass.outside.first), outside.last = std::max(outside.last, pass.outside.last);
   if (pass.bad.empty()) return std::move(pass.strips);
   const auto bad = std::make_shared<const std::vector<std::uint64_t>>(std::move(pass.bad));
   for (StripInfo& s : pass.strips) s.bad = bad;

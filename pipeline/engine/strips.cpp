@@ -91,6 +91,7 @@ void stream_strip(RunState& run, const stages::Strip& strip, const fs::path& str
     auto parcel = std::make_shared<Parcel>();
     parcel->accounts.resize(n);
     parcel->batch.line = strip.line;
+    parcel->batch.source = strip.source;
     const Stopwatch watch(Whose::thread);
     more = reader->next(parcel->batch, batch_points, parcel->accounts[source].tally);
     parcel->read = parcel->batch.shots.size() + parcel->batch.block.size();

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Records that are damaged: one clear error that names the place, and nothing left behind."""
+import json
 import os
 import shutil
 import struct
@@ -250,8 +251,14 @@ class Trajectories(Case):
         # The line begins 5 s after the trajectory, at 200 records a second, and lasts 1.2 s.
         for name, size in (("sbet.out", 136), ("smrmsg.out", 80)):
             truncate(self.toml.parent / name, size * (5 * 200 + 120) // size * size)
-        one = stage(self.run_ok(self.toml), "georeference")
+        done = swath("run", CONFIG, "--survey", self.toml, "--output", self.out)
+        self.assertRegex(done.stdout, r"warning \[laser\.outside_trajectory\]: \d+ of \d+ returns lie outside the trajectory or in its gaps "
+                         r"\([\d.]+ %\) and are left out: [\w.]+: \d+ from \d{4}-\d\d-\d\dT[\d:.]+Z to ")
+        one = stage(json.loads((self.out / "report.json").read_text()), "georeference")
+        files = one["tally"]["outside the trajectory, left out"]["files"]
         left_out = one["tally"]["outside the trajectory, left out"]["count"]
+        self.assertEqual(sum(f["count"] for f in files), left_out)
+        self.assertLess(files[0]["first_s"], files[0]["last_s"])
         self.assertEqual(one["counts"], {"in": whole, "out": whole - left_out})
         self.assertGreater(left_out, 0.2 * whole)
         self.assertLess(left_out, 0.8 * whole)

@@ -161,6 +161,8 @@ TEST(Georeference, WhatHasNoPlaceIsCountedAndLeftOut) {
   EXPECT_EQ(c.no_map, 0u);
   EXPECT_NEAR(static_cast<double>(c.outside), 501.0, 2.0);
   EXPECT_EQ(c.georeferenced + c.outside + c.no_range + c.no_beam, shots.size());
+  EXPECT_EQ(c.outside_times.n + 1, c.outside);  // one has no time
+  EXPECT_LT(c.outside_times.first, c.outside_times.last);
   EXPECT_EQ(out.size(), c.georeferenced);
   EXPECT_EQ(out.record[3], 10u);  // records keep their row: 3 to 9 are gone
   core::for_each_column([&](core::Column column, std::string_view name, auto member) {

@@ -15,6 +15,8 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   const core::Value report = io::parse_json(
       R"json({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "stages": [{"type": "readers.las", "tally": {
           "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}},
+          {"type": "readers.laser", "records": [{"name": "records", "read": 1000}], "tally": {"records outside every line, left out": {"count": 300}}},
+          {"type": "georeference", "counts": {"in": 700, "out": 600}, "tally": {"outside the trajectory, left out": {"count": 100}}},
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
@@ -79,6 +81,40 @@ TEST(Warnings, AFewContradictingFixesAreNoWarning) {
   EXPECT_EQ(number(R"({"imu_noise_factor": 40})"), 1u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "correlated_share": 0.94}})"), 0u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "sigmas_overstated": 3}})"), 1u);
+}
+
+TEST(Warnings, RecordsThatNothingCoversAreNamedWithFileAndTimes) {
+  const auto warned = [](const std::string& count, const std::string& files) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "georeference", "counts": {"in": 10000, "out": 0},
+        "tally": {"outside the trajectory, left out": {"count": )" +
+                                          count + R"(, "files": [)" + files + "]}}}]}",
+                                      "report"));
+  };
+  const auto file = [](const std::string& name) {
+    return R"({"file": ")" + name + R"(", "count": 55, "first_s": 1401485000.5, "last_s": 1401485010.25})";
+  };
+  EXPECT_TRUE(warned("100", file("a.las")).empty());  // 1 %
+  const auto one = warned("110", file("a.las") + "," + file("b.las"));
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0].code, "laser.outside_trajectory");
+  EXPECT_NE(one[0].text.find("110 of 10000 returns lie outside the trajectory or in its gaps (1.1 %)"), std::string::npos) << one[0].text;
+  EXPECT_NE(one[0].text.find("a.las: 55 from 2024-06-04T21:23:02.500Z to 2024-06-04T21:23:12.250Z; b.las: 55"), std::string::npos)
+      << one[0].text;
+  const auto many = warned("9999", file("a") + "," + file("b") + "," + file("c") + "," + file("d") + "," + file("e"));
+  EXPECT_NE(many[0].text.find("and 2 more files"), std::string::npos) << many[0].text;
+  EXPECT_EQ(many[0].text.find("d: 55"), std::string::npos) << many[0].text;
+}
+
+TEST(Warnings, TurnsThatWereScannedAreNoWarning) {
+  const auto number = [](const std::string& count) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "readers.laser", "records": [{"name": "records", "read": 1000}],
+        "tally": {"records outside every line, left out": {"count": )" +
+                                          count + "}}}]}",
+                                      "report"))
+        .size();
+  };
+  EXPECT_EQ(number("200"), 0u);
+  EXPECT_EQ(number("201"), 1u);
 }
 
 TEST(Warnings, OneDuplicateIn1000IsNoWarning) {

@@ -20,6 +20,8 @@ georef::Counts place_returns(StripBatch& batch, const Context& context, const tr
   core::Block block;
   block.origin = georeferencer.origin();
   const georef::Counts counts = georeferencer.run(batch.shots, block);
+  if (batch.source < survey.laser.size())
+    tally.add_times("outside the trajectory, left out", survey.laser[batch.source].file.filename().string(), counts.outside_times);
   core::scale_columns(unit.x(), unit.z(), block);
   block.origin = context.origin;
   block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));

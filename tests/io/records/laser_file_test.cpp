@@ -158,6 +158,11 @@ TEST_F(LaserFiles, TimeWindowsMakeStripsAndLeaveTheTurnsOut) {
   EXPECT_EQ(s[1].line, 9);
   EXPECT_EQ(s[1].records, 11u);
   EXPECT_EQ(tally_.of("records outside every line, left out"), 14u);
+  const core::Value* files = tally_.value().find("records outside every line, left out")->find("files");
+  ASSERT_TRUE(files);
+  EXPECT_EQ(files->items().at(0).find("count")->as_int(), 14);
+  EXPECT_EQ(files->items().at(0).find("first_s")->as_number(), 5.0);
+  EXPECT_EQ(files->items().at(0).find("last_s")->as_number(), 39.0);
   EXPECT_EQ(read_strip(survey_, s[1], 3, tally_).time.front(), 20);
   survey_.laser[0].line = 9;  // a stated line keeps to its window
   EXPECT_EQ(strips().at(0).records, 11u);
