@@ -203,13 +203,16 @@ std::string hint_of(const Job& job, const JobOption& o, const std::string& value
   return too_wide ? "name a smaller cell, or have wider gaps bridged, too: --set dtm.max_edge=" + value + "; " + sets : sets;
 }
 
-/// The keys of survey.toml that a hint names are options of a job.
-std::string of_options(std::string hint) {
+/// The keys of survey.toml that a hint names are options of a job, or keys of a survey to be written.
+std::string of_options(std::string hint, const Job& job) {
   const std::pair<std::string_view, std::string_view> keys[]{
       {"the columns and the CRS of this [[control]]", "the columns (--check-columns) and the CRS (--check-crs)"},
       {"crs in this [[control]]", "--check-crs"}};
   for (const auto& [key, option] : keys)
     if (const size_t at = hint.find(key); at != hint.npos) hint.replace(at, key.size(), option);
+  if (hint.find("points.") != hint.npos && hint.find("`swath run`") == hint.npos)
+    hint += "; " + job.name + " has no option for it: name the clouds as [[points]] in a survey.toml, and `swath run " + job.config +
+            " --survey survey.toml`";
   return hint;
 }
 
@@ -218,7 +221,7 @@ int run_job(const Job& job, const Given& a, const std::string& typed) {
   try {
     return run_pipeline(request_of(job, a), a.loudness, typed, a.save);
   } catch (const core::Error& e) {
-    if (e.hint().find("[[control]]") != std::string::npos) throw core::Error(e.what(), e.where(), of_options(e.hint()), e.code());
+    if (const std::string hint = of_options(e.hint(), job); hint != e.hint()) throw core::Error(e.what(), e.where(), hint, e.code());
     if (e.code() != core::Exit::bad_usage || e.where().starts_with("--")) throw;
     for (size_t k = 0; k < job.options.size(); ++k) {
       const std::string& key = job.options[k].option;

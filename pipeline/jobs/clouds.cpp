@@ -130,6 +130,29 @@ void require_one_crs(const core::Crs& first, const fs::path& first_file, const S
                               : "name the CRS of the products with --crs, and clouds of others are transformed; or run each alone");
 }
 
+/// "EPSG:25832+7837", as far as its codes are known.
+std::string code_with(const core::Crs& crs, int vertical) {
+  return (crs.epsg() ? "EPSG:" + std::to_string(crs.epsg()) : "EPSG:CODE") + "+" + (vertical ? std::to_string(vertical) : "CODE");
+}
+
+/// Heights of the cloud and of `crs`, which is named for the products: both of a stated system, or neither.
+void require_heights(const core::Crs& named_crs, const core::Crs& cloud, const fs::path& file, CrsNamed by) {
+  using core::Heights;
+  if (by == CrsNamed::in_pdal_pipeline || core::is_same_crs(cloud, named_crs)) return;
+  const std::string given = "--crs " + named_crs.name();
+  if (cloud.heights() == Heights::unknown && named_crs.heights() != Heights::unknown)
+    throw core::usage_error(
+        "its CRS, " + cloud.name() + ", does not state what its heights count from, while " + given + " asks for " +
+            named_crs.vertical_name() + ": no height is shifted on a guess",
+        file.string(),
+        (named_crs.epsg() ? "name --crs EPSG:" + std::to_string(named_crs.epsg()) : "name --crs without its vertical part") +
+            ", and the heights stay as they are; where they must change, state points.crs = \"" +
+            code_with(cloud, named_crs.vertical_epsg()) + "\" with the cloud's own vertical code in a survey.toml, for `swath run`");
+  if (cloud.heights() == Heights::vertical && named_crs.heights() == Heights::unknown)
+    throw core::usage_error("its heights are " + cloud.vertical_name() + ", while " + given + " does not state what heights count from",
+                            file.string(), "name the vertical part, too: --crs " + code_with(named_crs, cloud.vertical_epsg()));
+}
+
 }  // namespace
 
 std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
@@ -164,6 +187,7 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
     const Stated stated = stated_crs(file);
     if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), unstated_hint(file, by));
     if (!stated.crs) cloud["crs"] = crs;
+    if (!crs.empty() && stated.crs) require_heights(core::Crs(crs), *stated.crs, file, by);
     if (!crs.empty()) continue;
     if (!first) first = stated.crs, first_file = file;
     require_one_crs(*first, first_file, stated, file, by);

@@ -99,6 +99,18 @@ TEST_F(Clouds, ACrsThatIsNotStatedIsAskedFor) {
   EXPECT_NE(fault_of({bare}, "EPSG:1").find("--crs EPSG:1"), std::string::npos);
 }
 
+TEST_F(Clouds, OpenHeightsAreNamedInWordsOfTheCommand) {
+  const auto open = cloud("open.laz", "EPSG:25832"), known = cloud("known.laz", "EPSG:25832+7837");
+  std::string said = fault_of({open}, "EPSG:25832+7837");
+  EXPECT_NE(said.find("open.laz: its CRS, ETRS89 / UTM zone 32N, does not state what its heights count from"), std::string::npos) << said;
+  EXPECT_NE(said.find("name --crs EPSG:25832, and the heights stay as they are"), std::string::npos) << said;
+  said = fault_of({known}, "EPSG:25832");
+  EXPECT_NE(said.find("known.laz: its heights are "), std::string::npos) << said;
+  EXPECT_NE(said.find("hint: name the vertical part, too: --crs EPSG:25832+7837"), std::string::npos) << said;
+  EXPECT_NO_THROW(cloud_survey({known}, "EPSG:25832+7837"));
+  EXPECT_NO_THROW(cloud_survey({open}, "EPSG:25833"));
+}
+
 TEST_F(Clouds, APrjBesideACloudIsMentioned) {
   const auto bare = cloud("bare.laz", "");
   test::write_bytes("bare.prj", core::Crs("EPSG:2056").wkt1());
