@@ -24,12 +24,20 @@ struct Kind {
   std::vector<std::vector<std::string_view>> required;  ///< one of these sets of keys
 };
 
-const Role time_role{
-    "time",
-    {"gps_sow", "gpssow", "sow", "tow", "gps_tow", "seconds_of_week", "gps_time", "gpstime", "unix_time", "time", "t", "timestamp", "utc"}};
-const Role week_role{"week", {"week", "gps_week", "gpsw", "wn"}};
+const Role time_role{"time", {"gps_sow",     "gpssow",    "sow",          "tow",      "gps_tow", "seconds_of_week", "second_of_week",
+                              "sec_of_week", "secofweek", "time_of_week", "gps_time", "gpstime", "gps_seconds",     "gpsseconds",
+                              "gps_sec",     "gpssec",    "unix_time",    "time",     "t",       "timestamp",       "utc",
+                              "seconds",     "sec"}};
+const Role week_role{"week", {"week", "gps_week", "gpsweek", "gpsw", "wn"}};
 const Role height_role{"height",
-                       {"h_ell", "ellipsoidal_height", "ellipsoid_height", "altitude_ellipsoid", "height", "h", "altitude", "alt"}};
+                       {"h_ell", "hell", "ellh", "ell_height", "ellipsoidal_height", "ellipsoid_height", "ellipsoidalheight",
+                        "ellipsoidheight", "altitude_ellipsoid", "height", "h", "altitude", "alt", "elevation", "elev"}};
+
+/// Coordinates of a trajectory on a map, northing and easting: the clearer first. The last mean both.
+struct MapPair {
+  std::string_view northing, easting;
+};
+constexpr std::array<MapPair, 4> map_pairs{{{"northing", "easting"}, {"north", "east"}, {"n", "e"}, {"y", "x"}}};
 
 /// In the order of the search: what needs more columns comes first.
 const std::vector<Kind>& kinds() {
@@ -47,21 +55,21 @@ const std::vector<Kind>& kinds() {
       {TableKind::trajectory,
        {time_role,
         week_role,
-        {"latitude", {"latitude", "lat", "northing"}},
-        {"longitude", {"longitude", "lon", "lng", "long", "easting"}},
+        {"latitude", {"latitude", "lat"}},
+        {"longitude", {"longitude", "lon", "lng", "long"}},
         height_role,
         {"roll", {"roll"}},
         {"pitch", {"pitch"}},
-        {"heading", {"heading", "yaw", "azimuth"}},
+        {"heading", {"heading", "true_heading", "hdg", "yaw", "azimuth"}},
         {"v_north", {"v_north"}},
         {"v_east", {"v_east"}},
         {"v_down", {"v_down"}},
         {"sigma_north", {"sigma_north", "sdnorth", "sd_north", "north_sd"}},
         {"sigma_east", {"sigma_east", "sdeast", "sd_east", "east_sd"}},
         {"sigma_down", {"sigma_down", "sdheight", "sd_down", "sd_height", "height_sd"}},
-        {"sigma_roll", {"sigma_roll", "rollsd", "sd_roll", "roll_sd"}},
-        {"sigma_pitch", {"sigma_pitch", "pitchsd", "sd_pitch", "pitch_sd"}},
-        {"sigma_heading", {"sigma_heading", "hdngsd", "headingsd", "sd_heading", "heading_sd"}}},
+        {"sigma_roll", {"sigma_roll", "rollsd", "sd_roll", "roll_sd", "std_roll", "roll_std"}},
+        {"sigma_pitch", {"sigma_pitch", "pitchsd", "sd_pitch", "pitch_sd", "std_pitch", "pitch_std"}},
+        {"sigma_heading", {"sigma_heading", "hdngsd", "headingsd", "sd_heading", "heading_sd", "std_heading", "heading_std"}}},
        {{"time", "latitude", "longitude", "height", "roll", "pitch", "heading"}}},
       {TableKind::laser,
        {time_role,
@@ -187,7 +195,8 @@ void note_units(const PlainName& plain, std::string_view key, ColumnRoles& found
   if (gyro && (plain.name.starts_with("dtheta") || plain.name.starts_with("dangle"))) found.imu_kind = "increments";
   if (gyro && (plain.unit.ends_with("ps") || plain.unit.ends_with("/s"))) found.imu_kind = "rates";
   if (key != "time") return;
-  if (plain.name.ends_with("sow") || plain.name.ends_with("tow") || plain.name == "seconds_of_week") found.time_scale = "gps_week";
+  if (plain.name.ends_with("sow") || plain.name.ends_with("tow") || plain.name.ends_with("of_week") || plain.name == "secofweek")
+    found.time_scale = "gps_week";
   if (plain.name == "unix_time") found.time_scale = "unix";
   if (plain.unit == "ms") found.time_unit = "1 ms";
 }
@@ -206,9 +215,27 @@ void take_column(const Role& role, const std::vector<std::string>& names, const 
     const bool is_repeated = std::count(names.begin(), names.end(), names[c]) > 1;
     found.columns.emplace_back(role.key, is_repeated ? std::to_string(c + 1) : names[c]);
     if (!is_known_unit(at->unit, role.key)) found.foreign_units.push_back(names[c]);
-    if (role.key == "height" && at->name.starts_with("alt") && at->name.find("ell") == std::string::npos) found.altitude = names[c];
+    const bool may_be_of_the_sea = at->name.starts_with("alt") || at->name.starts_with("elev") || at->name == "z";
+    if (role.key == "height" && may_be_of_the_sea && at->name.find("ell") == std::string::npos) found.altitude = names[c];
     return note_units(*at, role.key, found);
   }
+}
+
+/// A place on a map, where none on the globe is named: both coordinates by one way of naming them. Height may be Z beside X and Y.
+void take_map_place(const std::vector<std::string>& names, const std::vector<PlainName>& plain, ColumnRoles& found) {
+  const auto has = [&](std::string_view name) {
+    return std::any_of(plain.begin(), plain.end(), [&](const PlainName& p) { return p.name == name; });
+  };
+  if (has_all(found, {"latitude"}) || has_all(found, {"longitude"})) return;
+  for (const MapPair& pair : map_pairs) {
+    if (!has(pair.northing) || !has(pair.easting)) continue;
+    take_column({"latitude", {pair.northing}}, names, plain, found);
+    take_column({"longitude", {pair.easting}}, names, plain, found);
+    found.is_on_map = true;
+    found.has_open_axes = pair.northing == "y";
+    break;
+  }
+  if (found.is_on_map && !has_all(found, {"height"})) take_column({"height", {"z"}}, names, plain, found);
 }
 
 }  // namespace
@@ -223,6 +250,9 @@ ColumnRoles roles_of(const std::vector<std::string>& names) {
     ColumnRoles found;
     found.kind = kind.kind;
     for (const Role& role : kind.roles) take_column(role, names, plain, found);
+    if (kind.kind == TableKind::trajectory) take_map_place(names, plain, found);
+    found.has_rival_headings = kind.kind == TableKind::trajectory && !has_any(plain, {"heading", "true_heading", "hdg"}) &&
+                               has_any(plain, {"yaw"}) && has_any(plain, {"azimuth"});
     if (found.mixed_angles) found.angle_unit.clear();
     if (std::none_of(kind.required.begin(), kind.required.end(), [&](const auto& keys) { return has_all(found, keys); })) continue;
     if (kind.kind == TableKind::gnss) drop_second_form(found);

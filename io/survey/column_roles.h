@@ -17,6 +17,9 @@ struct ColumnRoles {
   std::string angle_unit{};                                    ///< "deg" or "rad" as the names state it; empty: they do not, or mixed
   bool mixed_angles = false;                                   ///< some names state deg, others rad
   std::string altitude{};                                      ///< the height's name, where it may count from sea level
+  bool is_on_map = false;                                      ///< latitude and longitude are northing and easting of a map
+  bool has_open_axes = false;                                  ///< "X" and "Y": which of them is the northing is not known
+  bool has_rival_headings = false;                             ///< yaw and azimuth: which of them is the heading is not known
   std::vector<std::string> foreign_units{};                    ///< names of columns in units that are not read
   std::string acceleration_unit{};                             ///< "m/s2" or "g"
   std::string imu_kind{};                                      ///< "increments" or "rates"

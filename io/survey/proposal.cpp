@@ -179,12 +179,16 @@ void add_table(SurveyDraft& d, const FoundFile& f, const ColumnRoles& r) {
   if (r.kind == TableKind::imu) unit_of("acceleration_unit", r.acceleration_unit, "m/s2", "m/s2, g or mg");
   if (r.kind == TableKind::imu) d.open("axes = [\"x\", \"y\", \"z\"]", "which axes of the sensor point forward, right and down");
   std::string columns;
-  for (const auto& [key, name] : r.columns) {
-    if (key == "latitude" && core::lower_case(name).starts_with("northing"))
-      d.open("crs = \"EPSG:25832\"", "northings and eastings are of a CRS that the file does not name");
+  if (r.is_on_map) d.open("crs = \"EPSG:25832\"", "northings and eastings are of a CRS that the file does not name");
+  for (const auto& [key, name] : r.columns)
     if (key != "quality") columns += (columns.empty() ? "" : ", ") + key + " = " + toml_scalar(name);
-  }
   if (const std::string why = doubts_of(r); !why.empty()) d.doubt("columns", why);
+  std::string open;
+  if (r.has_open_axes)
+    open = "X and Y do not say which is the northing (key latitude): mostly Y, but X in geodetic notation; geocentric ones are not read";
+  if (r.has_rival_headings)
+    open += std::string(open.empty() ? "" : "; ") + "of yaw and azimuth one is the heading of the body, from true north: name it";
+  if (!open.empty()) return d.open("columns = { " + columns + " }", open);
   d.line("columns = { " + columns + " }  # by their names: check them");
 }
 

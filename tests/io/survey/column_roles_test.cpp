@@ -77,6 +77,39 @@ TEST(ColumnRoles, ExportsOfOtherPrograms) {
   EXPECT_EQ(roles_of({"time", "range_m", "lat_deg", "lon_deg", "h_m"}).kind, TableKind::laser);
 }
 
+TEST(ColumnRoles, TrajectoriesOnAMap) {
+  const auto r = roles_of({"GpsTime", "Y", "X", "Z", "Roll", "Pitch", "Azimuth"});
+  EXPECT_EQ(r.kind, TableKind::trajectory);
+  EXPECT_EQ(column(r, "time") + column(r, "latitude") + column(r, "longitude") + column(r, "height") + column(r, "heading"),
+            "GpsTimeYXZAzimuth");
+  EXPECT_TRUE(r.is_on_map && r.has_open_axes) << "geodesists have x to the north";
+  EXPECT_EQ(r.altitude, "Z");
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"SecOfWeek", "Easting", "Northing", "Height", "Roll", "Pitch", "Yaw"},
+        {"Time_of_Week (s)", "E", "N", "H", "Roll", "Pitch", "Heading"},
+        {"GPSSeconds", "East", "North", "Ell Height", "Roll", "Pitch", "Azimuth"}}) {
+    const auto on_map = roles_of(names);
+    EXPECT_EQ(on_map.kind, TableKind::trajectory) << names[0];
+    EXPECT_EQ(column(on_map, "longitude"), names[1]);
+    EXPECT_EQ(column(on_map, "latitude"), names[2]);
+    EXPECT_TRUE(on_map.is_on_map && !on_map.has_open_axes);
+    EXPECT_EQ(on_map.altitude, "");
+  }
+  EXPECT_EQ(roles_of({"SecOfWeek", "E", "N", "H", "Roll", "Pitch", "Yaw"}).time_scale, "gps_week");
+  // What is there on the globe is not taken from a map.
+  EXPECT_FALSE(roles_of({"t", "lat", "lon", "h", "e", "n", "roll", "pitch", "heading"}).is_on_map);
+}
+
+TEST(ColumnRoles, TwoMeaningsAreNotGuessed) {
+  EXPECT_EQ(roles_of({"t", "lat", "easting", "h", "roll", "pitch", "heading"}).kind, TableKind::none) << "globe and map";
+  EXPECT_EQ(roles_of({"t", "north", "e", "h", "roll", "pitch", "heading"}).kind, TableKind::none) << "two ways of naming";
+  EXPECT_TRUE(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "yaw", "azimuth"}).has_rival_headings);
+  EXPECT_FALSE(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "azimuth"}).has_rival_headings);
+  EXPECT_FALSE(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "heading", "azimuth"}).has_rival_headings);
+  EXPECT_EQ(column(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "heading", "azimuth"}), "heading"), "heading");
+  EXPECT_EQ(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "course"}).kind, TableKind::gnss) << "a course over ground is no heading";
+}
+
 TEST(ColumnRoles, UnitsThatAreNotReadAreNamed) {
   const auto r =
       roles_of({"time", "Latitude (dms)", "Longitude (dms)", "H-Ell (ft)", "Roll (arcmin)", "Pitch (arcmin)", "Heading (arcmin)"});

@@ -153,6 +153,18 @@ TEST(Proposal, AnExportOfPospacIsATrajectory) {
   EXPECT_NE(p.toml.find("latitude = \"LATITUDE\", longitude = \"LONGITUDE\", height = \"5\""), std::string::npos) << p.toml;
 }
 
+TEST(Proposal, ATrajectoryByXAndYAsksWhichIsTheNorthing) {
+  const std::string row = "474009.0,5300456.2,500123.1,611.2,0.5,1.2,88.0\n474009.1,5300456.3,500123.1,611.2,0.5,1.2,88.0\n";
+  const Proposal open = proposed_of("GpsTime,Y,X,Z,Roll,Pitch,Azimuth\n" + row);
+  EXPECT_NE(open.toml.find("[[trajectory]]"), std::string::npos) << open.toml;
+  EXPECT_TRUE(is_open(open, "trajectory[1].columns") && is_open(open, "trajectory[1].crs")) << open.toml;
+  EXPECT_NE(open.toml.find("# columns = { time = \"GpsTime\", latitude = \"Y\", longitude = \"X\", height = \"Z\""), std::string::npos)
+      << open.toml;
+  const Proposal clear = proposed_of("GpsTime,Northing,Easting,Height,Roll,Pitch,Azimuth\n" + row);
+  EXPECT_FALSE(is_open(clear, "trajectory[1].columns")) << clear.toml;
+  EXPECT_TRUE(is_open(clear, "trajectory[1].crs")) << clear.toml;
+}
+
 TEST(Proposal, SolutionsOfOneTimeAreRivals) {
   const auto solution = [](const char* name, const char* from, const char* to) {
     return file(name, std::string("{\"format\": \"RTKLIB solution\", \"from\": \"") + from + "\", \"to\": \"" + to + "\"}");
