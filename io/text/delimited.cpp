@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/printable.h"
 #include "io/text/cut_line.h"
+#include "io/text/decimal_comma.h"
 #include "io/text/table_start.h"
 
 namespace swath::io {
@@ -102,18 +103,12 @@ struct NumberedLine {
   std::uint64_t begin = 0, number = 0;
 };
 
-/// The program that packed a file with these first bytes; empty: none.
-std::string packing_of(std::string_view begin) {
-  if (begin.starts_with("\x1F\x8B")) return "gzip";
-  return begin.starts_with("PK\x03\x04") ? "zip" : "";
-}
-
 void require_not_utf16(const std::filesystem::path& path) {
   const BinaryFile file(path);
   std::array<char, 4> begin{};
   const size_t got = file.read_some(0, begin.data(), std::min<std::uint64_t>(begin.size(), file.size()));
   const std::string_view text(begin.data(), got);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || !packing_of(text).empty()) require_text(text, path);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || is_packed(text)) require_text(text, path);
 }
 
 /// Which fields are numbers.
@@ -158,31 +153,6 @@ bool is_header(const std::vector<std::string>& fields) {
 
 }  // namespace
 
-void require_text(std::string_view begin, const std::filesystem::path& file) {
-  if (const std::string by = packing_of(begin); !by.empty())
-    throw core::Error("is compressed by " + by, file.string(), "unpack it first: " + std::string(by == "gzip" ? "gunzip" : "unzip"));
-  const bool marked = begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF");
-  const bool bare = begin.size() >= 4 && (begin[0] == '\0') != (begin[1] == '\0') && (begin[2] == '\0') != (begin[3] == '\0');
-  if (marked || bare)
-    throw core::Error("is text in UTF-16, which is not read", file.string(),
-                      "save it as UTF-8: \"CSV UTF-8\" in a spreadsheet's list of formats");
-  if (begin.find('\0') != std::string_view::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
-}
-
-std::string fields_and_columns(size_t fields, size_t columns, bool has_header) {
-  return "the line has " + core::counted(fields, "field") + (has_header ? ", the header " : ", the first line ") +
-         core::counted(columns, "column");
-}
-
-const char* number_hint(std::string_view field, const char* otherwise) {
-  if (field.find(',') != field.npos) return "decimal commas are not read: write decimal points";
-  const bool digits = field.find_first_of("0123456789") != field.npos;
-  if (digits && field.find(':') != field.npos) return "times of day are not read here: export seconds, of the GPS week or of Unix";
-  if (digits && (field.find_first_of(" '") != field.npos || field.find("\xC2\xB0") != field.npos))
-    return "degrees, minutes and seconds are not read: export decimal degrees";
-  return otherwise;
-}
-
 DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
   require_not_utf16(path);
   const TableStart table = table_start(path, delimiter);
@@ -191,7 +161,8 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   std::string comment, header, line;
   bool have_header = false, anything = table.data > 0;
   std::vector<NumberedLine> data;
-  NumberedLine above;  // what was taken for the header
+  NumberedLine above;                             // what was taken for the header
+  std::vector<std::vector<std::string>> written;  // as they are, with decimal commas
   while (data.size() <= cut_line_context && lines.next(line)) {
     if (line.find_first_not_of('\t') == line.npos) continue;
     if (is_comment(line)) {
@@ -203,6 +174,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
     if (data.empty()) out.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, path);
     if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = delimiter_in(line);  // a cut line has none
     std::vector<std::string> fields = split_delimited(line, out.delimiter);
+    if (out.delimiter == ';' || out.delimiter == '\t') written.push_back(fields), fields = with_points(std::move(fields));
     if (data.empty() && !have_header && is_header(fields)) {
       above = {std::move(fields), lines.begin(), lines.number()};
       have_header = true;
@@ -225,6 +197,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   const bool cut = first_line_is_cut(fields, !anything);
   const NumberedLine& first = data[cut ? 1 : 0];
   if (cut) out.cut_line = data[0].number;
+  out.decimal_comma = are_decimal_commas(written, out.delimiter);
   out.columns = first.fields.size();
   out.data_begin = first.begin;
   out.data_line = first.number;
@@ -273,6 +246,7 @@ DelimitedReader::DelimitedReader(const std::filesystem::path& file, const Delimi
     : file_(file),
       names_(layout.names),
       delimiter_(layout.delimiter),
+      decimal_comma_(layout.decimal_comma),
       fields_needed_(columns.empty() ? 0 : *std::max_element(columns.begin(), columns.end()) + 1),
       columns_(layout.names.empty() ? layout.columns : layout.names.size()),
       fields_of_all_(std::min(columns_, layout.columns)),
@@ -339,11 +313,11 @@ bool DelimitedReader::next(double* values) {
     } else {
       double value;
       const auto [p, ec] = std::from_chars(at, end, value);
-      if (ec == std::errc() && (p == end || *p == delimiter_ || (delimiter_ == ' ' && *p == '\t'))) {
+      if (ec == std::errc() && !decimal_comma_ && (p == end || *p == delimiter_ || (delimiter_ == ' ' && *p == '\t'))) {
         stop = p;
       } else {
         stop = field_end(at, end, delimiter_);
-        if (!parse_number(at, stop, value)) bad_number(at, stop, field);
+        if (!parse_field(at, stop, value)) bad_number(at, stop, field);
       }
       for (const size_t slot : slots_[field]) values[slot] = value;
     }
@@ -383,6 +357,14 @@ void DelimitedReader::short_line(size_t fields) const {
                     "the line is cut off or has another delimiter: export the file again");
 }
 
+bool DelimitedReader::parse_field(const char* begin, const char* end, double& value) const {
+  if (!decimal_comma_) return parse_number(begin, end, value);
+  std::string text(begin, end);
+  if (text.find('.') != text.npos) return false;
+  std::replace(text.begin(), text.end(), ',', '.');
+  return parse_number(text.data(), text.data() + text.size(), value);
+}
+
 void DelimitedReader::bad_number(const char* begin, const char* end, size_t column) const {
   trim(begin, end);
   constexpr std::ptrdiff_t longest = 40, longest_of_zeros = 8;  // bytes shown
@@ -394,7 +376,8 @@ void DelimitedReader::bad_number(const char* begin, const char* end, size_t colu
                       file_.path().string() + ":" + std::to_string(line_),
                       "the file was not written or copied to its end: copy it again, or take the line out");
   throw core::Error("'" + text + "' in column " + name + " is no number", file_.path().string() + ":" + std::to_string(line_),
-                    number_hint(text, "correct the line, or export the file again"));
+                    decimal_comma_ && text.find('.') != text.npos ? "the numbers above it have decimal commas: write all of them alike"
+                                                                  : number_hint(text, "correct the line, or export the file again"));
 }
 
 }  // namespace swath::io

@@ -12,17 +12,9 @@
 
 #include "io/text/binary_file.h"
 #include "io/text/fields.h"
+#include "io/text/text_faults.h"
 
 namespace swath::io {
-
-/// What is wrong with a line whose fields are not the table's columns.
-std::string fields_and_columns(size_t fields, size_t columns, bool has_header);
-/// What may be the cause of a line with more fields than the table has columns.
-inline constexpr const char* more_fields_hint = "a number with a decimal comma, or a text that holds the delimiter and needs quotes?";
-/// What to do about a field that is not a number: a decimal comma is named.
-const char* number_hint(std::string_view field, const char* otherwise);
-/// Throws Error where the text's first bytes are those of UTF-16 or it holds bytes of 0: `begin` of a file, of any length.
-void require_text(std::string_view begin, const std::filesystem::path& file);
 
 /// How a delimited file is written, found in its first lines.
 struct DelimitedLayout {
@@ -32,6 +24,7 @@ struct DelimitedLayout {
   size_t misfit = 0;               ///< fields of the first data lines where the header has another number of names; 0: it fits them
   std::uint64_t data_begin = 0;    ///< byte of the first data line
   std::uint64_t data_line = 1;     ///< its number, from 1
+  bool decimal_comma = false;      ///< numbers have decimal commas (io/text/decimal_comma.h)
   std::uint64_t cut_line = 0;      ///< the line before it, where that is the end of a record only (io/text/cut_line.h); 0: none
 };
 
@@ -48,9 +41,9 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& file, const std::
 size_t column_of(const DelimitedLayout& layout, const std::string& column, const std::filesystem::path& file);
 
 /// Streams the numbers of chosen columns. Comments and empty lines are passed over. "nan" and "inf" are handed over as such, an empty
-/// field as NaN. Throws Error "file:line" for a field that is no number, for a line with too few fields, and for one with more fields than
-/// the header (without one, the first line of data) where a character parts them: a decimal comma would move all that follows by one
-/// column.
+/// field as NaN; decimal commas are read where the layout has them, and a decimal point is a fault there. Throws Error "file:line" for a
+/// field that is no number, for a line with too few fields, and for one with more fields than the header (without one, the first line of
+/// data) where a character parts them: a decimal comma would move all that follows by one column.
 class DelimitedReader {
  public:
   /// Reads from byte `begin` (start of line number `line`) to byte `end`. `columns`: indices from 0, in the order wanted.
@@ -71,11 +64,14 @@ class DelimitedReader {
   void expect_no_more(const char* at, const char* end) const;
   /// The same of lines parted by blanks, where an empty field moves all that follow it.
   void expect_all(const char* at, const char* end) const;
+  /// A field by the table's decimal sign; false where it is no number.
+  bool parse_field(const char* begin, const char* end, double& value) const;
   [[noreturn]] void bad_number(const char* begin, const char* end, size_t column) const;
 
   BinaryFile file_;
   std::vector<std::string> names_;
   char delimiter_;
+  bool decimal_comma_;
   size_t fields_needed_, columns_;
   size_t fields_of_all_;                    // that a line has at least
   std::vector<std::vector<size_t>> slots_;  // per field of the line: places in `values`

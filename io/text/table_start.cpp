@@ -5,9 +5,11 @@
 #include <functional>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/printable.h"
+#include "io/text/decimal_comma.h"
 #include "io/text/fields.h"
 #include "io/text/line_reader.h"
 
@@ -47,7 +49,8 @@ Line line_of(std::uint64_t number, std::string_view text, const std::string& del
              Records records) {
   Line out{number, std::string(text)};
   out.delimiter = delimiter.empty() ? delimiter_in(out.text) : delimiter_from(delimiter, file);
-  const std::vector<std::string> fields = split_delimited(out.text, out.delimiter);
+  std::vector<std::string> fields = split_delimited(out.text, out.delimiter);
+  if (out.delimiter == ';' || out.delimiter == '\t') fields = with_points(std::move(fields));
   out.fields = fields.size();
   out.empty = static_cast<size_t>(std::count(fields.begin(), fields.end(), ""));
   const auto counts = [&](const std::string& f) { return records == Records::mixed ? is_value(f) : is_number(f); };

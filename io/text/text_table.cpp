@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/text/data_lines.h"
+#include "io/text/decimal_comma.h"
 #include "io/text/line_reader.h"
 
 namespace swath::io {
@@ -18,7 +19,7 @@ namespace {
 bool is_row(const std::vector<std::string>& fields) {
   const auto is_number = [](const std::string& f) {
     double ignored = 0;
-    return read_number(f, ignored);
+    return read_number(with_point(f), ignored);
   };
   return std::count_if(fields.begin(), fields.end(), is_number) >= 2;
 }
@@ -59,6 +60,7 @@ TextTable::TextTable(const std::filesystem::path& file, const std::string& delim
     lines_.push_back(line.line);
     rows_.push_back(std::move(line.fields));
   });
+  layout_.decimal_comma = are_decimal_commas(rows_, layout_.delimiter);
   if (rows_.empty())
     throw core::Error("no row of data", file.string(), layout_.names.empty() ? "the file is empty" : "the file holds a header only");
 }
@@ -92,16 +94,20 @@ int TextTable::whole_number(size_t row, size_t column, const std::string& what) 
   return static_cast<int>(value);
 }
 
+std::string TextTable::pointed(size_t row, size_t column) const {
+  return layout_.decimal_comma ? with_point(text(row, column)) : text(row, column);
+}
+
 double TextTable::coordinate(size_t row, size_t column) const {
-  const std::string& field = text(row, column);
+  const std::string field = pointed(row, column);
   if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
   const char *begin = field.data() + (field.size() > 1 && field[0] == '+' ? 1 : 0), *stop = field.data() + field.size();
   double value = 0;
   const auto [end, bad] = std::from_chars(begin, stop, value);
   if (bad == std::errc::result_out_of_range && end == stop) return std::numeric_limits<double>::infinity();
   if (bad != std::errc{} || end != stop)
-    throw core::Error("'" + field + "' is no number in column " + column_name(column), place(row),
-                      number_hint(field, "correct the line, or name another column"));
+    throw core::Error("'" + text(row, column) + "' is no number in column " + column_name(column), place(row),
+                      number_hint(text(row, column), "correct the line, or name another column"));
   return value;
 }
 

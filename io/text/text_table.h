@@ -39,6 +39,8 @@ class TextTable {
   std::optional<size_t> column_if_there(const std::string& name, const std::string& usual) const;
 
   const std::string& text(size_t row, size_t column) const { return rows_[row][column]; }
+  /// The field with its decimal comma, where the table has them, as a point.
+  std::string pointed(size_t row, size_t column) const;
   /// Throws Error with "file:line" where the field is empty: "`of` has no name".
   const std::string& name(size_t row, size_t column, const std::string& of) const;
   /// A whole number of up to nine digits; throws Error with "file:line": "`what` is not a whole number: 2.5".

@@ -79,7 +79,7 @@ class Nearness {
 /// A field's number; NaN where it is none.
 double number_in(const io::TextTable& table, size_t row, size_t column) {
   double value = 0;
-  return io::read_number(table.text(row, column), value) ? value : std::numeric_limits<double>::quiet_NaN();
+  return io::read_number(table.pointed(row, column), value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool holds_numbers(const io::TextTable& table, size_t column) {

@@ -142,9 +142,9 @@ class Jobs(Case):
         classified = swath("classify", self.clouds, "-o", self.folder / "classified", "--quiet")
         self.assertEqual(classified.returncode, 0, classified.stderr)
         marks = self.folder / "marks.csv"
-        marks.write_text("name;x;y;z\nP0;650017,093;5300081,269;100,885\n")
+        marks.write_text("name;x;y;z\nP0;650017,093;5300081.269;100,885\n")
         done = swath("qc", self.folder / "classified" / "points", "--check", marks, "-o", self.out)
-        self.assert_error(done, 1, r"marks\.csv:2: '650017,093' is no number", "decimal commas are not read")
+        self.assert_error(done, 1, r"marks\.csv:2: '650017,093' is no number", "does the comma part decimals or thousands")
         self.assertNotIn("strips", done.stderr)
         self.assertFalse(self.out.exists())
         level = swath("qc", self.folder / "classified" / "points", "--level", "QL0", "-o", self.out, "--quiet")

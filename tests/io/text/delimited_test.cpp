@@ -93,9 +93,24 @@ TEST_F(Delimited, BadNumbersAndShortLinesNameTheLine) {
   EXPECT_NE(std::string(e.what()).find("'x4'"), std::string::npos);
   e = error_of("a,b\n1,2\n\n3\n", {"b"});
   EXPECT_EQ(e.where(), (folder_ / "a.csv").string() + ":4");
-  e = error_of("a;b\n1,5;2\n", {"a"});
+  e = error_of("a;b\n1,500;2\n", {"a"});
+  EXPECT_NE(e.hint().find("decimals or thousands"), std::string::npos) << e.text();
   error_of("a b\n1 2\n3 4.5.6\n", {"b"});
   EXPECT_NE(error_of("a b\n1 2\n3\n", {"b"}).where().find(":3"), std::string::npos);
+}
+
+TEST_F(Delimited, DecimalCommasAreReadBetweenSemicolonsAndTabs) {
+  const Rows expected{{12.345, 67.8}, {13.5, 68}};
+  EXPECT_EQ(read_all(made("12,345;67,8\n13,5;68\n"), {"1", "2"}), expected);
+  EXPECT_EQ(read_all(made("time;range\n12,345;67,8\n13,5;68\n"), {"time", "range"}), expected);
+  EXPECT_EQ(read_all(made("Flight of the day\ntime\trange\n12,345\t67,8\n\"13,5\"\t68\n"), {"time", "range"}), expected);
+  // Points beside commas may part thousands.
+  EXPECT_NE(error_of("time;range\n12,345;67,8\n14,5;1.068\n", {"range"}).hint().find("decimals or thousands"), std::string::npos);
+  std::string late = "time;range\n";
+  for (int k = 0; k < 60; ++k) late += std::to_string(k) + ",5;67,8\n";
+  const core::Error e = error_of(late + "60,5;1.068\n", {"range"});
+  EXPECT_NE(e.text().find("a.csv:62: '1.068'"), std::string::npos) << e.text();
+  EXPECT_NE(e.hint().find("the numbers above it have decimal commas"), std::string::npos) << e.text();
 }
 
 TEST_F(Delimited, LinesWithMoreFieldsThanTheHeaderAreNamed) {

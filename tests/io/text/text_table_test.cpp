@@ -62,7 +62,7 @@ TEST_F(Tables, ColumnsThatNeedNotBeThere) {
   EXPECT_EQ(fault([&] { t.column_if_there("s", "sigma"); }), "a.csv: no column 's'; columns: name, x");
 }
 
-TEST_F(Tables, ADecimalCommaIsNamedAndALetterHasNoNearest) {
+TEST_F(Tables, DecimalCommasAreReadOrNamedAndALetterHasNoNearest) {
   const auto hint = [](const auto& f) {
     try {
       f();
@@ -72,7 +72,12 @@ TEST_F(Tables, ADecimalCommaIsNamedAndALetterHasNoNearest) {
     return std::string();
   };
   const TextTable t = table("P;N;E\nP0;650017,093;5\n");
-  EXPECT_EQ(hint([&] { t.number(0, 1); }), "decimal commas are not read: write decimal points");
+  EXPECT_EQ(t.number(0, 1), 650017.093);
+  EXPECT_EQ(t.number(0, 2), 5.0);
+  EXPECT_EQ(t.text(0, 1), "650017,093");
+  const TextTable doubtful = table("P;N;E\nP0;17,093;5\n");
+  EXPECT_EQ(hint([&] { doubtful.number(0, 1); }),
+            "does the comma part decimals or thousands? Write decimal points, and nothing between thousands");
   EXPECT_EQ(hint([&] { t.column("x"); }), "name one of the columns, or its number from 1");
 }
 
