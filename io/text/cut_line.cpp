@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/text/fields.h"
 #include "io/text/line_reader.h"
 
 namespace swath::io {
@@ -77,6 +78,39 @@ bool first_line_is_cut(const std::vector<std::vector<std::string>>& lines, bool 
   if (is.after != next.after) return false;
   if (is.before == 0 && std::all_of(forms.begin() + 1, forms.end(), [](const Form& f) { return f.before > 0; })) return true;
   return lacks_leading_digits(values, is, next);
+}
+
+bool last_line_is_cut(const BinaryFile& file, std::uint64_t begin, char delimiter) {
+  constexpr std::uint64_t tail = 1 << 14;  // bytes before the line: thirty records of 500 bytes
+  const std::uint64_t from = begin > tail ? begin - tail : 0;
+  std::string text(static_cast<size_t>(file.size() - from), '\0');
+  text.resize(file.read_some(from, text.data(), text.size()));
+  const size_t start = static_cast<size_t>(begin - from);
+  if (start >= text.size()) return false;
+  std::vector<std::vector<std::string>> before;
+  size_t end = start;  // behind the line end of the line before
+  while (before.size() < cut_line_context && end > 1) {
+    const size_t line_end = end - 1, line_begin = text.rfind('\n', line_end - 1);
+    if (line_begin == text.npos && from > 0) break;  // its beginning is not there
+    end = line_begin == text.npos ? 0 : line_begin + 1;
+    const std::string line = text.substr(end, line_end - end);
+    const size_t first = line.find_first_not_of(" \t\r");
+    if (first != line.npos && line[first] != '#' && line[first] != '%') before.push_back(split_delimited(line, delimiter));
+  }
+  if (before.size() < enough) return false;
+  const std::vector<std::string> last = split_delimited(text.substr(start), delimiter);
+  const size_t usual = before.front().size();
+  const auto has_usual = [&](const auto& fields) { return fields.size() == usual; };
+  if (before.size() < cut_line_context && !has_usual(before.back())) before.pop_back();  // the header
+  if (before.size() < enough || !std::all_of(before.begin(), before.end(), has_usual)) return false;
+  if (last.size() != usual) return last.size() < usual;
+  const Form is = form_of(last.back()), of = form_of(before.front().back());
+  const auto alike = [&](const auto& fields) {
+    const Form f = form_of(fields.back());
+    return f.plain && f.point && f.after == of.after;
+  };
+  return of.after > 0 && std::all_of(before.begin(), before.end(), alike) && is.after < of.after &&
+         (is.plain || last.back().find_first_not_of("+-") == std::string::npos);
 }
 
 void count_cut_line(std::uint64_t line, const std::filesystem::path& file, const std::string& kind, core::Tally& tally) {

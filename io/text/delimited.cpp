@@ -269,6 +269,7 @@ bool DelimitedReader::next_line(const char*& begin, const char*& end) {
       end = nl ? nl : buffer_.data() + fill_;
       const size_t taken = static_cast<size_t>(end - begin) + (nl ? 1 : 0);
       begin_ += taken;
+      is_open_ = !nl;
       offset_ = next_offset_;
       line_ = next_line_++;
       next_offset_ += taken;
@@ -302,6 +303,7 @@ bool DelimitedReader::next(double* values) {
     while (first < end && is_blank(*first)) ++first;
     is_data = first < end && *first != '\r' && !begins_comment(*first);
   } while (!is_data);
+  if (is_open_) expect_whole(at, end);
   trim_line(at, end, delimiter_);
   for (size_t field = 0; field < fields_needed_; ++field) {
     if (delimiter_ == ' ')
@@ -351,10 +353,17 @@ void DelimitedReader::expect_no_more(const char* at, const char* end) const {
                       more_fields_hint);
 }
 
+void DelimitedReader::expect_whole(const char* at, const char* end) const {
+  if (end_ < file_.size() || !last_line_is_cut(file_, offset_, delimiter_)) return;
+  constexpr std::ptrdiff_t longest = 60;  // bytes shown
+  throw core::Error("the file ends within the line '" + core::printable({at, std::min(end, at + longest)}) + "'",
+                    file_.path().string() + ":" + std::to_string(line_), cut_hint);
+}
+
 void DelimitedReader::short_line(size_t fields) const {
   throw core::Error("the line has " + core::counted(fields, "field") + ", at least " + std::to_string(fields_needed_) + " are needed",
                     file_.path().string() + ":" + std::to_string(line_),
-                    "the line is cut off or has another delimiter: export the file again");
+                    is_open_ ? cut_hint : "the line is cut off or has another delimiter: export the file again");
 }
 
 bool DelimitedReader::parse_field(const char* begin, const char* end, double& value) const {

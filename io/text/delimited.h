@@ -59,6 +59,8 @@ class DelimitedReader {
 
  private:
   bool next_line(const char*& begin, const char*& end);
+  /// Throws Error where the file ends within the line [at, end), after which no line end follows.
+  void expect_whole(const char* at, const char* end) const;
   [[noreturn]] void short_line(size_t fields) const;
   /// `at`: behind the fields that are needed.
   void expect_no_more(const char* at, const char* end) const;
@@ -80,6 +82,7 @@ class DelimitedReader {
   std::uint64_t file_at_, end_;  // next byte to load; end of the stretch
   std::uint64_t next_offset_, next_line_;
   std::uint64_t offset_ = 0, line_ = 0;
+  bool is_open_ = false;  // no line end follows the line
 };
 
 }  // namespace swath::io

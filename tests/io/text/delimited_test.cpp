@@ -113,6 +113,24 @@ TEST_F(Delimited, DecimalCommasAreReadBetweenSemicolonsAndTabs) {
   EXPECT_NE(e.hint().find("the numbers above it have decimal commas"), std::string::npos) << e.text();
 }
 
+TEST_F(Delimited, AFileThatEndsWithinItsLastLineIsNamed) {
+  std::string rows = "t,line,range\n";
+  for (int k = 0; k < 12; ++k) rows += "4740" + std::to_string(10 + k) + ".250,1,500.125\n";
+  for (const char* cut : {"474022.250,1,500.12", "474022.250,1,50", "474022.250,1,", "474022.250,1", "474022.2", "4740"}) {
+    const core::Error e = error_of(rows + cut, {"t"});  // also where the fields that are read are there
+    EXPECT_EQ(e.where(), (folder_ / "a.csv").string() + ":14") << cut;
+    EXPECT_NE(e.text().find(std::string("the file ends within the line '") + cut + "'"), std::string::npos) << e.text();
+    EXPECT_NE(e.hint().find("copy it again"), std::string::npos) << e.hint();
+  }
+  // A whole line without a line end, and one of numbers that are written as they come.
+  EXPECT_EQ(read_all(made(rows + "474022.250,1,500.125"), {"range"}).size(), 13u);
+  EXPECT_EQ(read_all(made(rows + "474022.250,1,500.1\n"), {"range"}).size(), 13u);
+  std::string free = rows + "474022.250,1,500.5\n";
+  EXPECT_EQ(read_all(made(free + "474023.250,1,7.5"), {"range"}).size(), 14u);
+  const core::Error few = error_of("t,range\n1,2\n3", {"range"});
+  EXPECT_NE(few.hint().find("copy it again"), std::string::npos) << few.hint();
+}
+
 TEST_F(Delimited, LinesWithMoreFieldsThanTheHeaderAreNamed) {
   for (const char* text : {"a,b,c\n1,2,3\n1,2,5,3\n", "1,2,3\n1,2,5,3\n", "a,b,c\n1,2,3,\n1,2,5,3,\n", "a;b;c\n1;2;3\n1;2;x;y\n"}) {
     const core::Error e = error_of(text, {"1"});
