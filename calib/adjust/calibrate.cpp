@@ -113,7 +113,27 @@ void make_quick(TiePlaneOptions& planes, AdjustOptions& adjusted) {
 
 std::string about_metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m", v); }
 
-[[noreturn]] void throw_reversed_scan() {
+/// Does the body's forward axis point against the velocity, most of the time? An IMU that is turned by 180 deg about the vertical exchanges
+/// the sides, as a scan angle of the other sign does.
+bool flies_backwards(const trajectory::Trajectory& trajectory) {
+  constexpr size_t samples = 1000;
+  constexpr double slowest = 1.0, backwards = -0.7;  // m/s; cosine, 45 deg
+  const std::vector<double>& times = trajectory.data().time;
+  std::vector<double> along;
+  for (size_t k = 0; k < times.size(); k += std::max<size_t>(1, times.size() / samples))
+    if (const auto pose = trajectory.pose_at(times[k]); pose && pose->velocity.norm() > slowest)
+      along.push_back(pose->ecef_R_body.col(0).dot(pose->velocity.normalized()));
+  return core::median(std::move(along), 0.0) < backwards;
+}
+
+[[noreturn]] void throw_reversed_scan(const trajectory::Trajectory& trajectory) {
+  if (flies_backwards(trajectory))
+    throw core::Error(
+        "the surfaces of the lines do not meet, and the body's forward axis points against the flight: the IMU is turned by "
+        "180 deg about the vertical",
+        "trajectory",
+        "turn heading of [[imu]] in survey.toml by 180 deg, or the signs of two of its axes; a given [[trajectory]] is to be "
+        "exported with the heading of the craft's forward axis");
   throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "laser records",
                     "positive is to starboard: set laser.angle_to_port in survey.toml, or turn the sign of the column");
 }
@@ -127,7 +147,7 @@ void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
 
 void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options) {
   if (scan_is_reversed(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, sized(options, flight.scale.height)))
-    throw_reversed_scan();
+    throw_reversed_scan(*flight.trajectory);
 }
 
 std::vector<std::string> targets_not_found(const core::Tally& tally) {
@@ -165,7 +185,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   if (options.coarse) {
     progress(0.0, "matching surfaces");
     out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, match);
-    if (out.match->scan_reversed) throw_reversed_scan();
+    if (out.match->scan_reversed) throw_reversed_scan(*flight.trajectory);
     now = out.match->calibration;
   } else {
     refuse_reversed_scan(flight, match);

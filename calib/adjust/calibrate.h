@@ -66,7 +66,8 @@ std::vector<std::string> targets_not_found(const core::Tally& tally);
 trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
                                 const trajectory::Trajectory& trajectory);
 
-/// Throws core::Error where the surfaces of the lines meet only with the sign of the scan angle turned (scan_is_reversed()).
+/// Throws core::Error where the surfaces of the lines meet only with the sign of the scan angle turned (scan_is_reversed());
+/// an IMU turned by 180 deg about the vertical, which looks alike, is named where the body flies backwards.
 void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options = {});
 
 /// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of

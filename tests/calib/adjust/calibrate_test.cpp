@@ -167,6 +167,28 @@ TEST(Calibrate, TheSignOfTheScanAngleIsRefusedWithoutTheCoarseStepToo) {
   }
 }
 
+TEST(Calibrate, AnImuTurnedAboutTheVerticalIsNamedAsThat) {
+  Flight flight(pattern());
+  core::TrajectoryData turned = flight.flown.data;
+  for (size_t k = 0; k < turned.size(); ++k) {
+    turned.heading[k] = core::wrap_two_pi(turned.heading[k] + core::pi);
+    turned.roll[k] = -turned.roll[k];
+    turned.pitch[k] = -turned.pitch[k];
+  }
+  flight.trajectory.emplace(turned);
+  for (const bool coarse : {true, false}) {
+    CalibrateOptions options;
+    options.coarse = coarse;
+    try {
+      flight.calibrated(options);
+      ADD_FAILURE() << "not refused";
+    } catch (const core::Error& e) {
+      EXPECT_NE(std::string(e.what()).find("the IMU is turned by 180 deg about the vertical"), std::string::npos) << e.text();
+      EXPECT_EQ(e.hint().find("angle_to_port"), std::string::npos) << e.hint();
+    }
+  }
+}
+
 TEST(Calibrate, AFrameAmidTheLinesAtTheGround) {
   const Flight flight(pattern());
   std::vector<std::pair<double, double>> times;
