@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <tuple>
 
 #include "core/distributions.h"
 #include "core/statistics.h"
@@ -46,6 +47,31 @@ std::string seen_in(size_t agree, size_t all) {
   return (agree == all ? "all of the " : std::to_string(agree) + " of the ") + std::to_string(all) + " lines that show it";
 }
 
+/// The unit that heights of marks are in, where all of them are one factor of the ground's: feet for metres, or metres for feet. Empty:
+/// neither. US survey feet differ by 2 ppm, which no heights show.
+std::string foreign_unit(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings) {
+  constexpr double foot = 0.3048, tolerance = 0.01, lowest = 3.0;  // m; of the factor; m: of lower ground the ratio says little
+  std::map<int, std::vector<double>> ratios;
+  for (const MarkReading& r : readings) {
+    const double height = marks[static_cast<size_t>(r.mark)].at.z(), ground = height + static_cast<double>(r.difference);
+    if (std::abs(ground) > lowest) ratios[r.mark].push_back(height / ground);
+  }
+  if (ratios.size() < least_marks) return {};
+  for (const auto& [factor, is, of] : {std::tuple(1.0 / foot, "feet", "metres"), std::tuple(foot, "metres", "feet")}) {
+    std::vector<double> all;
+    for (const auto& [mark, own] : ratios) all.push_back(core::median(own));
+    const auto fit = std::count_if(all.begin(), all.end(), [&](double r) { return std::abs(r / factor - 1.0) < tolerance; });
+    if (5 * static_cast<size_t>(fit) < 4 * all.size()) continue;  // one mark of five may be wrong besides
+    char out[400];
+    std::snprintf(out, sizeof out,
+                  "the heights of the check points are %.4g times those of the ground (%zu of %zu within 1 %%): they are in %s, and the "
+                  "survey's in %s: convert them, or name the CRS of the check points with its unit of heights",
+                  core::median(all), static_cast<size_t>(fit), all.size(), is, of);
+    return out;
+  }
+  return {};
+}
+
 }  // namespace
 
 MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings) {
@@ -66,6 +92,7 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
   for (const MarkReading& r : readings) rest.push_back(std::abs(static_cast<double>(r.difference) - offset[r.line]));
   const double scatter = core::mad_to_sigma * core::median(rest, 0.0);
 
+  const std::string unit = foreign_unit(marks, readings);
   bool all_above = true, all_below = true;
   size_t judged = 0;
   for (const auto& [line, g] : lines) {
@@ -75,6 +102,10 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
     ++judged;
     all_above = all_above && offset[line] > beyond * sigma;
     all_below = all_below && offset[line] < -beyond * sigma;
+  }
+  if (!unit.empty()) {  // the other faults would be its consequences
+    out.named.push_back({"check.heights", unit});
+    return out;
   }
   if (judged > 0 && (all_above || all_below)) {
     std::vector<double> offsets, sigmas;

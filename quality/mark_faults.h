@@ -43,6 +43,7 @@ struct MarkFaults {
   std::vector<NamedFault> named;  ///< in the order: heights, lines, marks
 };
 
+/// Heights of marks in feet beside metres, or the other way round, are named alone: nothing else can be judged with them.
 /// Differences are taken apart: what all lines share, what a line has at all its marks, what a mark shows to all its lines. Named is what
 /// lies beyond four sigmas: of the marks, the points, the scatter around the mark and that of the differences themselves.
 MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings);

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <random>
+#include <utility>
 
 namespace swath::quality {
 namespace {
@@ -59,6 +60,30 @@ TEST(MarkFaults, ABadMarkIsNamed) {
     EXPECT_NE(f.named[0].sentence.find("M5 (check.csv:7)"), std::string::npos) << f.named[0].sentence;
     EXPECT_NE(f.named[0].sentence.find("below"), std::string::npos);
   }
+}
+
+/// Twelve marks on a slope from 80 to 190 m, their heights times a factor.
+Case scaled(double factor, double lowest = 80.0) {
+  Case c = drawn(3, [](int, int) { return 0.0; });
+  for (size_t m = 0; m < c.marks.size(); ++m) c.marks[m].at.z() = factor * (lowest + 10.0 * static_cast<double>(m));
+  for (MarkReading& r : c.readings) r.difference += static_cast<float>((1 / factor - 1) * c.marks[static_cast<size_t>(r.mark)].at.z());
+  return c;
+}
+
+TEST(MarkFaults, HeightsInFeetAreNamedAsThat) {
+  for (const auto& [factor, words] : {std::pair(1 / 0.3048, "times those of the ground (12 of 12 within 1 %): they are in feet"),
+                                      std::pair(0.3048, "times those of the ground (12 of 12 within 1 %): they are in metres")}) {
+    const Case c = scaled(factor);
+    const MarkFaults f = find_faults(c.marks, c.readings);
+    ASSERT_EQ(f.named.size(), 1u);
+    EXPECT_EQ(f.named[0].code, "check.heights");
+    EXPECT_NE(f.named[0].sentence.find(words), std::string::npos) << f.named[0].sentence;
+  }
+  for (const double factor : {1.0, 1.5, 3.0})
+    for (const NamedFault& f : find_faults(scaled(factor).marks, scaled(factor).readings).named)
+      EXPECT_EQ(f.sentence.find("feet"), std::string::npos) << factor << f.sentence;
+  // Ground at the level of the sea says nothing, the rest does.
+  EXPECT_EQ(codes(scaled(1 / 0.3048, -50.0)), Codes{"check.heights"});
 }
 
 /// Whichever way one line of two differs, the mark is not to blame, for the other line agrees with it.
