@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "io/text/decimal_comma.h"
 #include "io/text/fields.h"
 #include "io/text/line_reader.h"
 
@@ -87,6 +89,11 @@ bool last_line_is_cut(const BinaryFile& file, std::uint64_t begin, char delimite
   text.resize(file.read_some(from, text.data(), text.size()));
   const size_t start = static_cast<size_t>(begin - from);
   if (start >= text.size()) return false;
+  const auto fields_of = [delimiter](const std::string& line) {
+    std::vector<std::string> fields = split_delimited(line, delimiter);
+    return delimiter == ';' || delimiter == '\t' ? with_points(std::move(fields)) : fields;
+  };
+  const auto is_number = [](const std::string& field) { return form_of(field).plain; };
   std::vector<std::vector<std::string>> before;
   size_t end = start;  // behind the line end of the line before
   while (before.size() < cut_line_context && end > 1) {
@@ -95,14 +102,15 @@ bool last_line_is_cut(const BinaryFile& file, std::uint64_t begin, char delimite
     end = line_begin == text.npos ? 0 : line_begin + 1;
     const std::string line = text.substr(end, line_end - end);
     const size_t first = line.find_first_not_of(" \t\r");
-    if (first != line.npos && line[first] != '#' && line[first] != '%') before.push_back(split_delimited(line, delimiter));
+    if (first != line.npos && line[first] != '#' && line[first] != '%') before.push_back(fields_of(line));
   }
+  if (end == 0)  // names and descriptions at the beginning of the file
+    while (!before.empty() && std::none_of(before.back().begin(), before.back().end(), is_number)) before.pop_back();
   if (before.size() < enough) return false;
-  const std::vector<std::string> last = split_delimited(text.substr(start), delimiter);
+  const std::vector<std::string> last = fields_of(text.substr(start));
   const size_t usual = before.front().size();
   const auto has_usual = [&](const auto& fields) { return fields.size() == usual; };
-  if (before.size() < cut_line_context && !has_usual(before.back())) before.pop_back();  // the header
-  if (before.size() < enough || !std::all_of(before.begin(), before.end(), has_usual)) return false;
+  if (!std::all_of(before.begin(), before.end(), has_usual)) return false;
   if (last.size() != usual) return last.size() < usual;
   const Form is = form_of(last.back()), of = form_of(before.front().back());
   const auto alike = [&](const auto& fields) {

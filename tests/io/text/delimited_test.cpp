@@ -122,6 +122,9 @@ TEST_F(Delimited, AFileThatEndsWithinItsLastLineIsNamed) {
     EXPECT_NE(e.text().find(std::string("the file ends within the line '") + cut + "'"), std::string::npos) << e.text();
     EXPECT_NE(e.hint().find("copy it again"), std::string::npos) << e.hint();
   }
+  std::string commas = "t;range\n";
+  for (int k = 0; k < 12; ++k) commas += "4740" + std::to_string(10 + k) + ",25;500,125\n";
+  EXPECT_NE(error_of(commas + "474022,25;500,1", {"t"}).text().find("the file ends within the line"), std::string::npos);
   // A whole line without a line end, and one of numbers that are written as they come.
   EXPECT_EQ(read_all(made(rows + "474022.250,1,500.125"), {"range"}).size(), 13u);
   EXPECT_EQ(read_all(made(rows + "474022.250,1,500.1\n"), {"range"}).size(), 13u);
