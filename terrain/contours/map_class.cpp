@@ -2,7 +2,10 @@
 #include "terrain/contours/map_class.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string>
 
 #include "core/error.h"
 
@@ -63,7 +66,10 @@ std::string too_many_levels(const SurfaceFacts& f, double interval, double unit)
   if (!(levels > max_levels)) return {};
   const std::string name = unit == 1.0 ? " m" : " ft";
   const auto height = [&](double h) { return core::format_number(std::round(h / unit * 10) / 10); };
-  return "contours every " + core::format_number(interval / unit, 4) + name + " between heights of " + height(f.lowest) + " and " +
+  std::array<char, 40> every{};  // 0.00001, not 1e-05
+  const auto end = std::to_chars(every.data(), every.data() + every.size(), std::stod(core::format_number(interval / unit, 4)),
+                                 std::chars_format::fixed);
+  return "contours every " + std::string(every.data(), end.ptr) + name + " between heights of " + height(f.lowest) + " and " +
          height(f.highest) + name + " are " + core::format_number(levels) + " levels, and at most " + core::format_number(max_levels) +
          " are drawn";
 }

@@ -134,9 +134,9 @@ TEST(RasterStages, ContoursTellOfDamagedIntermediateFiles) {
 
 TEST(RasterStages, ContoursByTheMillimetreAreRefused) {
   Work w;
-  w.context.tile_side = 10.0;
+  w.context.tile_side = 2.0;
   w.grids.made[Product::dtm] = [](double x, double y, float& height, core::Void& reason) {
-    height = static_cast<float>(2.0 * x);
+    height = static_cast<float>(18.0 * x);
     reason = core::Void::none;
   };
   const fs::path folder = w.folder / "contours";
