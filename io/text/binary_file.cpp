@@ -12,6 +12,13 @@
 
 namespace swath::io {
 
+std::string hint_of_folder(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  const std::filesystem::path survey = folder / "survey.toml";
+  if (std::filesystem::exists(survey, unknown)) return "name its survey: " + survey.string();
+  return "name one of its files; `swath init FOLDER` proposes a survey.toml of the records in a folder";
+}
+
 BinaryFile::BinaryFile(std::filesystem::path file) : path_(std::move(file)) {
   fd_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer would keep us waiting
   if (fd_ < 0) throw_system_error("cannot open", path_, errno);
@@ -20,7 +27,8 @@ BinaryFile::BinaryFile(std::filesystem::path file) : path_(std::move(file)) {
   if (failed || !S_ISREG(info.st_mode)) {
     ::close(fd_);
     if (failed) throw_system_error("cannot open", path_, failed);
-    throw core::Error(S_ISDIR(info.st_mode) ? "is a folder, not a file" : "is not a regular file", path_.string());
+    if (S_ISDIR(info.st_mode)) throw core::Error("is a folder, not a file", path_.string(), hint_of_folder(path_));
+    throw core::Error("is not a regular file", path_.string());
   }
   size_ = static_cast<std::uint64_t>(info.st_size);
 }

@@ -11,6 +11,9 @@
 
 namespace swath::io {
 
+/// What to name in place of a folder: its survey.toml where it has one.
+std::string hint_of_folder(const std::filesystem::path& folder);
+
 /// A regular file read at stated bytes. One object may be used by several threads.
 class BinaryFile {
  public:

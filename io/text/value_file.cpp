@@ -18,6 +18,7 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/printable.h"
+#include "io/text/binary_file.h"
 #include "io/text/output_file.h"
 
 namespace swath::io {
@@ -216,7 +217,7 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
 
 std::string read_text_file(const std::filesystem::path& file) {
   std::error_code ec;
-  if (std::filesystem::is_directory(file, ec)) throw core::Error("is a folder, not a file", file.string());
+  if (std::filesystem::is_directory(file, ec)) throw core::Error("is a folder, not a file", file.string(), hint_of_folder(file));
   if (std::filesystem::exists(file, ec) && !std::filesystem::is_regular_file(file, ec))
     throw core::Error("is not a regular file", file.string());
   errno = 0;

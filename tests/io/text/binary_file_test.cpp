@@ -35,7 +35,17 @@ TEST(BinaryFile, TheEndIsNamedByItsByte) {
 
 TEST(BinaryFile, FoldersAndAbsentFilesAreErrors) {
   const test::TemporaryFolder folder;
-  EXPECT_THROW(BinaryFile(folder.path()), core::Error);
+  const auto hint = [&] {
+    try {
+      const BinaryFile file(folder.path());
+    } catch (const core::Error& e) {
+      return e.hint();
+    }
+    return std::string();
+  };
+  EXPECT_NE(hint().find("swath init"), std::string::npos) << hint();
+  test::write_bytes(folder / "survey.toml", "");
+  EXPECT_EQ(hint(), "name its survey: " + (folder / "survey.toml").string());
   EXPECT_THROW(BinaryFile(folder / "none.bin"), core::Error);
 }
 
