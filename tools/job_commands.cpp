@@ -55,7 +55,7 @@ const std::vector<Job>& jobs() {
       {"colour",
        "colour",
        "Examples\n  swath colour flight.laz --photos photos --orientation block/orientation.csv --camera block/camera.toml\n\nGive point "
-       "clouds the colours of oriented photographs; what no camera sees has none.",
+       "clouds the colours of oriented photographs; points that no camera sees keep theirs.",
        {},
        {},
        false,
@@ -152,8 +152,22 @@ void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& ou
   if (side > 0.0 && side < least_tile && !decides)
     throw core::usage_error("the cell is too small", o.flag + " " + cell,
                             "the smallest is " + core::format_quantity(Dimension::length, least_tile / max_cells) +
-                                "; returns of a survey from the air lie decimetres apart");
+                                (o.option == "dtm.cell" ? "; returns of a survey from the air lie decimetres apart" : ""));
   if (side > 0.0 && side < usual_tile) out.sets.insert(out.sets.begin(), "run.tile=" + core::format_quantity(Dimension::length, side));
+}
+
+/// By the finest cells of the rasters that the job makes.
+void fit_tile_to_finest(const Job& job, const Given& a, pipeline::Request& out) {
+  const JobOption* finest = nullptr;
+  std::string cell;
+  for (size_t k = 0; k < job.options.size(); ++k) {
+    const JobOption& o = job.options[k];
+    if (a.values[k].empty() || (o.option != "dtm.cell" && o.option != "orthophoto.cell")) continue;
+    if (finest && quantity(o.dimension, a.values[k], o.flag, o.example) >= quantity(finest->dimension, cell, finest->flag, finest->example))
+      continue;
+    finest = &o, cell = a.values[k];
+  }
+  if (finest) fit_tile(cell, *finest, out);
 }
 
 /// For intervals below 1 m shorter lines are kept than the config has it: 20 times the interval, or a small plot would have none. `--set
@@ -184,10 +198,10 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     if (a.values[k].empty()) continue;
     quantity(o.dimension, a.values[k], o.flag, o.example);
     out.sets.push_back(o.option + "=" + a.values[k]);
-    if (o.option == "dtm.cell" || o.option == "orthophoto.cell") fit_tile(a.values[k], o, out);
     if (o.option == "orthophoto.cell") out.sets.push_back("true_orthophoto.cell=" + a.values[k]);
     if (o.option == "contours.interval") fit_lines(a.values[k], o, out);
   }
+  fit_tile_to_finest(job, a, out);
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
   if (job.judges) add_judgement(a, files, out), require_ground(files, a.request.sets);
   if (job.photos) add_photos(a, *out.survey_tree);
@@ -258,7 +272,8 @@ void add_job(Commands& commands, const Job& job) {
     c->add_option("--photos", a->photos, "Folder of the photographs, as the camera took them")->required();
     c->add_option("--orientation", a->orientation, "Table of their orientations: orientation.csv of `swath block`")->required();
     c->add_option("--camera", a->camera, "Table of the camera: camera.toml of `swath block`")->required();
-    c->add_option("--orientation-crs", a->orientation_crs, "CRS of the orientations, where their table states none and it is another");
+    c->add_option("--orientation-crs", a->orientation_crs,
+                  "CRS of the orientations, if their table states none; default: that of the clouds");
   }
   c->add_option("--crs", a->crs, "CRS of the products, and of clouds that state none: EPSG:25832");
   c->add_option("--set", a->request.sets, "One option of one stage of the config " + job.config)->allow_extra_args(false);

@@ -268,6 +268,8 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
   text("orientation.csv", orientation_csv(read, config, s));
   if (const JointCovariance joint = joint_covariance(read, s); !joint.images.empty())
     text(joint_covariance_file, joint_covariance_csv(config.crs, joint));
+  else
+    std::filesystem::remove(folder / joint_covariance_file);  // that of an earlier block would be read with these orientations
   if (!read.frame.is_local()) {
     const std::vector<Geolocation> images = geolocations(read, s);
     text("geo.txt", geo_text(config.crs, images));

@@ -36,7 +36,7 @@ std::vector<float> north_first(const core::Lattice& l, const std::vector<float>&
   return out;
 }
 
-/// Colours and what covers them as bands of T, 8 of 16 bits of each colour where T has 8.
+/// Colours and what covers them as bands of T, rounded to 8 of 16 bits where T has 8.
 template <class T>
 void write_colours_as(const std::filesystem::path& file, const core::Lattice& l, const ColourBands& colours, GDALDataset& memory,
                       const GdalMessages& messages) {
@@ -46,7 +46,7 @@ void write_colours_as(const std::filesystem::path& file, const core::Lattice& l,
     GDALColorInterp colour;
   };
   const Named bands[]{{"red", colours.red, GCI_RedBand}, {"green", colours.green, GCI_GreenBand}, {"blue", colours.blue, GCI_BlueBand}};
-  constexpr int shift = 16 - 8 * static_cast<int>(sizeof(T));
+  const auto narrowed = [](std::uint16_t v) { return sizeof(T) == 1 ? static_cast<T>(std::min(255, (v + 128) / 256)) : static_cast<T>(v); };
   std::vector<std::vector<T>> rows(4, std::vector<T>(l.size()));
   for (size_t b = 0; b < 4; ++b)
     for (int j = 0; j < l.ny; ++j)
@@ -54,7 +54,7 @@ void write_colours_as(const std::filesystem::path& file, const core::Lattice& l,
         T& to = rows[b][l.at(i, l.ny - 1 - j)];
         const size_t at = l.at(i, j);
         if (b < 3)
-          to = static_cast<T>((*bands[b].values)[at] >> shift);
+          to = narrowed((*bands[b].values)[at]);
         else
           to = (*colours.is_there)[at] ? std::numeric_limits<T>::max() : T{0};
       }

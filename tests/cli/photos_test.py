@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colours of points and orthophotos from simulated photographs, from raw records and of clouds; mistakes of their tables."""
+import json
 import shutil
 import struct
 import unittest
@@ -85,6 +86,9 @@ class Photos(Case):
             self.assert_colours([(x, y, 256 * v) for (x, y), v in found.items()], 6.5)
             self.assertTrue((self.out / f"{name}_quality.vrt").exists())
             self.assertTrue((self.out / f"{name}.vrt").exists())
+            listed = (self.out / f"{name}_images.csv").read_text().splitlines()
+            self.assertEqual(len(listed), 1 + len(list((self.survey / "photos").iterdir())))
+            self.assertEqual(sum(int(line.split(",")[3]) for line in listed[1:]), len(found))
 
     def test_from_raw_records_in_one_run(self):
         config = self.folder / "chain.toml"
@@ -98,6 +102,16 @@ class Photos(Case):
         self.assertLess(found["sigma_plan_m"], 0.2)
         self.assertGreater(found["sigma_plan_m"], 0.005)
         self.assertTrue((self.out / "block" / "orientation_camera.csv").exists())
+        # A tilt and a principal point are uncertain together: without that the sigma is much larger.
+        (self.folder / "given").mkdir()
+        for file in ("orientation.csv", "camera.toml"):
+            shutil.copy(self.out / "block" / file, self.folder / "given")
+        done = swath("orthophoto", self.cloud / "points", "--photos", self.survey / "photos", "--orientation",
+                     self.folder / "given" / "orientation.csv", "--camera", self.folder / "given" / "camera.toml", "--output",
+                     self.folder / "exact", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        exact = stage(json.loads((self.folder / "exact" / "report.json").read_text()), "images.orthophoto")["findings"]["sigma_plan_m"]
+        self.assertGreater(exact, 2.0 * found["sigma_plan_m"])
         # Another photograph under the name of one: the run is made anew.
         changed = self.copy()
         names = sorted((changed / "photos").iterdir())
@@ -116,13 +130,15 @@ class Photos(Case):
         refused(2, "no such folder", photos=self.folder / "none")
         refused(2, "no such file", orientation=self.folder / "none.csv")
         (self.folder / "empty").mkdir()
-        refused(1, "no oriented image, as 1, has a file", photos=self.folder / "empty")
+        refused(1, r"no file in the folder matches an oriented image \(first: 1\)", photos=self.folder / "empty")
         camera = self.folder / "camera.toml"
         camera.write_text((self.survey / "truth" / "camera.toml").read_text().replace("columns = 400", "columns = 401"))
         refused(1, "the image has 400 x 300 pixels, camera camera has 401 x 300", camera=camera)
         table = self.folder / "orientation.csv"
         table.write_text((self.survey / "truth" / "orientation.csv").read_text().replace("EPSG:32632", "EPSG:32632+5773"))
         refused(1, "heights of the orientations are", orientation=table)
+        table.write_text((self.survey / "truth" / "orientation.csv").read_text().replace("EPSG:32632", "EPSG:32633"))
+        refused(1, "no photograph sees the survey; the nearest", orientation=table)
         table.write_text((self.survey / "truth" / "orientation.csv").read_text().replace(",phi,", ",fi,"))
         refused(1, "no column 'phi'", orientation=table)
         config = self.folder / "plain.toml"

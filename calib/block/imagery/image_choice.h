@@ -22,7 +22,7 @@ struct SightOptions {
 template <class V>
 void describe(SightOptions& o, V& v) {
   v.option("reach", o.reach, core::within(0, 500), "Horizontal distance within which something may hide a place from a camera.");
-  v.option("clearance", o.clearance, core::within(0, 100), "What rises less than this above a place does not hide it.");
+  v.option("clearance", o.clearance, core::within(0, 100), "Objects lower than this above a place do not hide it.");
   v.option("off_nadir", o.off_nadir, core::within(0, 85.0 * core::degree), "Largest angle between a ray and the vertical.");
 }
 

@@ -33,8 +33,8 @@ struct Window {
 
 /// The mean over a square by as many bilinear values as it has pixels.
 Colour colour_at(const Window& w, const ImagePlace& p) {
-  constexpr int most = 16;
-  const int n = std::clamp(static_cast<int>(std::lround(p.side)), 1, most);
+  constexpr int max_samples = 32;  // along a side
+  const int n = std::clamp(static_cast<int>(std::lround(p.side)), 1, max_samples);
   std::array<double, 3> sum{};
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)

@@ -32,7 +32,7 @@ void put_rows(const char* of, const std::string& name, const M& m, const Keys& k
 template <class Keys>
 Eigen::Index row_of(const Keys& keys, const std::string& key, const std::string& place) {
   const auto at = std::find(keys.begin(), keys.end(), key);
-  if (at == keys.end()) throw core::Error("'" + key + "' is none of the components", place, "`swath block` writes such a file");
+  if (at == keys.end()) throw core::Error("'" + key + "' is not a component", place, "`swath block` writes such a file");
   return at - keys.begin();
 }
 

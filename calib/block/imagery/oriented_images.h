@@ -46,10 +46,11 @@ struct OrientedImage {
   /// the table has none.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   PoseByCamera with_camera = PoseByCamera::Zero();  ///< covariance with the camera's values
+  bool has_covariance = false;                      ///< the table states it
   double steepest = 0.0;                            ///< tangent of the largest angle to the vertical at which it sees anything
 };
 
-/// Local Cartesian frame: east, north, up at the middle of the images.
+/// Local Cartesian frame: east, north, up at the first image.
 struct OrientedImages {
   MetreMap map;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the frame, units of the map's CRS
@@ -59,14 +60,17 @@ struct OrientedImages {
   std::vector<OrientedImage> images;
   std::vector<std::string> without_file;  ///< oriented images that the folders do not have
   int bits = 8;                           ///< of the photographs: 8, or 16 where one has them
-  bool has_covariance = false;
 
   /// For one thread.
   BlockFrame frame() const { return {map.crs, middle}; }
 };
 
+/// The files of a folder of photographs that may be images of the table, without what lies beside them (world files, metadata).
+std::vector<std::filesystem::path> photographs_in(const std::filesystem::path& folder);
+
 /// Throws core::Error with file and line: a column missing, a camera that is not there or states no pixels, an image that is there twice or
-/// has two files, a file of another size than the camera's, no image with a file, heights of table and map that have no relation.
+/// has two files, a rotation whose matrix and angles differ, cameras that all look up, a file of another size than the camera's, no image
+/// with a file, heights of table and map that have no relation.
 OrientedImages read_oriented_images(const std::vector<PhotoSource>& sources, const MetreMap& map);
 
 }  // namespace swath::calib

@@ -120,7 +120,7 @@ class Painter {
                    static_cast<float>(out_.lattice.cell / pixel)};
     out_.image[at] = view.image;
     out_.off_nadir[at] = static_cast<float>(std::atan(view.slope));
-    if (images_.has_covariance)
+    if (image.has_covariance)
       out_.sigma[at] = static_cast<float>(std::sqrt(variance_in_plan(images_, view.image, place, surface_.sigma(x, y))));
   }
 

@@ -40,8 +40,8 @@ struct Orthophoto {
   core::Lattice lattice;
   std::vector<std::uint16_t> red, green, blue;  ///< over 16 bits
   std::vector<std::uint32_t> image;             ///< that the cell is from; no_image: none
-  /// Radial standard deviation of the cell's place by the image's orientation and the surface's height, m; not a number where the images
-  /// have no covariances. And the angle of its ray to the vertical, rad.
+  /// Radial standard deviation of the cell's place by the image's orientation and the surface's height, m; not a number where the image
+  /// has no covariance. And the angle of its ray to the vertical, rad.
   std::vector<float> sigma, off_nadir;
   OrthoCounts counts;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands between a place and a camera. Map coordinates, m; the ray is straight on the map: its bend over 100 m is under a millimetre.
+// What stands between a place and a camera. Map coordinates, m; the ray is straight on the map: its bend is 1 mm over 100 m, 2 cm over 500
+// m.
 #pragma once
 
 #include <Eigen/Core>

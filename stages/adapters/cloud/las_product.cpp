@@ -114,12 +114,16 @@ io::TileFacts write_points(TileJob& job, const Context& context, const PointFiel
   });
   if (!writer) open({});
   io::TileFactsOf facts;
+  bool has_colours = false;
   job.stream([&](core::Block& block) {
+    has_colours = has_colours || !block.red.empty();
     if (o.sources) o.sources->complete(block);
     facts.add(block);
     to_crs_units(context, block);
     writer->write(block);
   });
+  if (fields.point_format && !io::las_layout(*fields.point_format)->rgb && has_colours)
+    job.tally.count("colours that the point format cannot hold (point_format = 7 keeps them)", facts.facts().points);
   if (writer->overlap_lost() > 0)
     job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
   writer->finish();

@@ -7,7 +7,7 @@
 namespace swath::stages {
 namespace {
 
-constexpr const char* stage_name = "images.colour";
+constexpr const char *stage_name = "images.colour", *coloured_file = "seen";
 
 struct ColourStageOptions : calib::ColourOptions {};
 
@@ -18,11 +18,21 @@ void describe(ColourStageOptions& o, V& v) {
 
 calib::ColourCounts colour_tile(TileJob& job, const Context& context, const ColourStageOptions& o, RunCache& cache) {
   const calib::OrientedImages& images = cache.get([&] { return photos_of(context); });
-  return calib::colour_points(job.block, job.own, images, o);
+  const calib::ColourCounts counts = calib::colour_points(job.block, job.own, images, o);
+  write_rows(piece_file(job.folder, job.key, coloured_file), std::vector<std::uint64_t>{counts.coloured + counts.hidden});
+  return counts;
 }
 
-PhotoFindings find_photos(const MergeJob&, const Context& context, RunCache& cache) {
-  return findings_of(cache.get([&] { return photos_of(context); }));
+PhotoFindings find_photos(const MergeJob& job, const Context& context, RunCache& cache) {
+  const calib::OrientedImages& images = cache.get([&] { return photos_of(context); });
+  std::uint64_t coloured = 0;
+  for (const TileKey key : job.tiles) {
+    std::vector<std::uint64_t> of_tile;
+    read_rows(piece_file(job.folder, key, coloured_file), of_tile);
+    for (const std::uint64_t n : of_tile) coloured += n;
+  }
+  expect_seen(images, context, job.tiles, coloured, stage_name);
+  return findings_of(images);
 }
 
 /// Of points: places in the frame's coordinates, on a photograph, and colours; columns with their tops.
@@ -35,7 +45,8 @@ TileMemory colour_memory(const ColourStageOptions& o, const Context& c) {
 }  // namespace
 
 Entry colour_stage() {
-  return tile<colour_tile, find_photos>(stage_name, "Colours of points from the photographs that see them, hidden ones left out.",
+  return tile<colour_tile, find_photos>(stage_name,
+                                        "Colours of points from the photographs that see them; points that no camera sees keep theirs.",
                                         {.columns = columns(calib::ColourOptions{}),
                                          .memory = colour_memory,
                                          .check = [](const Context& c, const ColourStageOptions&) { expect_photos(c, stage_name); },

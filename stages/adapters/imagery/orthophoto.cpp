@@ -7,6 +7,8 @@
 #include "calib/block/imagery/image_colours.h"
 #include "core/config/units.h"
 #include "core/grid_units.h"
+#include "core/printable.h"
+#include "io/text/output_file.h"
 #include "stages/adapters/imagery/photos.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
@@ -14,7 +16,8 @@
 namespace swath::stages {
 namespace {
 
-constexpr const char *ortho_name = "images.orthophoto", *true_ortho_name = "images.true_orthophoto", *quality = "_quality";
+constexpr const char *ortho_name = "images.orthophoto", *true_ortho_name = "images.true_orthophoto", *quality = "_quality",
+                     *image_list = "_images.csv";
 
 struct OrthoStageOptions : calib::OrthoOptions {
   OrthoStageOptions() = default;
@@ -57,9 +60,23 @@ void write_quality(const TileRasters& out, TileKey key, const calib::Orthophoto&
     angle[k] = photo.off_nadir[k] / static_cast<float>(core::degree);
   }
   const Context& c = out.context;
-  io::write_raster(out.file(key, quality), core::in_units(c.unit, photo.lattice),
-                   {{"sigma of place", "m", &photo.sigma}, {"angle to the vertical", "degree", &angle}, {"row of the image", "", &image}},
-                   c.product_crs, false);
+  io::write_raster(
+      out.file(key, quality), core::in_units(c.unit, photo.lattice),
+      {{"sigma of place", "m", &photo.sigma}, {"angle to the vertical", "degree", &angle}, {"number of the image", "", &image}},
+      c.product_crs, false);
+}
+
+/// What the band "number of the image" means, and what is taken from each.
+void write_image_list(const std::filesystem::path& file, const calib::OrientedImages& images, const std::vector<Share>& shares) {
+  std::string table = "number,image,file,cells,sigma_m\n";
+  for (size_t i = 0; i < images.images.size(); ++i) {
+    const Share& s = shares[i];
+    const double sigma = std::sqrt(s.variance / static_cast<double>(s.cells));
+    table += std::to_string(i + 1) + "," + core::csv_field(images.images[i].name) + "," +
+             core::csv_field(images.images[i].file.filename().string()) + "," + std::to_string(s.cells) + "," +
+             (std::isfinite(sigma) ? core::format_number(sigma, 4) : "") + "\n";
+  }
+  io::write_text_file(file, table);
 }
 
 void write_shares(const TileJob& job, const calib::Orthophoto& photo, size_t images) {
@@ -102,13 +119,18 @@ OrthoFindings join_tiles(const MergeJob& job, const Context& context, RunCache& 
   for (const Share& s : shares) used.at(s.image) = 1, variance += s.variance, cells += static_cast<double>(s.cells);
   for (const char u : used) out.used += u != 0;
   out.sigma = std::sqrt(variance / cells);
+  std::uint64_t seen = 0;
+  std::vector<Share> of_image(images.images.size());
+  for (const Share& s : shares) of_image[s.image].cells += s.cells, of_image[s.image].variance += s.variance, seen += s.cells;
+  expect_seen(images, context, job.tiles, seen, surface == Product::dtm ? ortho_name : true_ortho_name);
+  write_image_list(context.output / (std::string(product_name<surface>) + image_list), images, of_image);
   TileRasters{context, product_name<surface>}.finish(job.tiles, {"", quality});
   return out;
 }
 
-TileMemory ortho_memory(const OrthoStageOptions& o, const Context& c) {
+TileMemory ortho_memory(const OrthoStageOptions& o, const Context& c, Product surface) {
   constexpr double bytes_per_cell = 80.0;  // place, colour and bands, and the copies that are written
-  TileMemory out{0.0, window_of(c, Product::dtm, 1)};
+  TileMemory out{0.0, window_of(c, surface, 1)};
   for (Raster& r : out.rasters) r.side += 2.0 * o.reach.value;
   out.rasters.push_back({"cell", o.cell.value, c.tile_side, bytes_per_cell});
   out.rasters.push_back({"", 1.0, 1.0, photo_memory(c)});
@@ -118,13 +140,13 @@ TileMemory ortho_memory(const OrthoStageOptions& o, const Context& c) {
 template <const Product& surface>
 TileExtras<OrthoStageOptions> extras() {
   return {
-      .memory = ortho_memory,
+      .memory = [](const OrthoStageOptions& o, const Context& c) { return ortho_memory(o, c, surface); },
       .check = [](const Context& c, const OrthoStageOptions&) { expect_photos(c, surface == Product::dtm ? ortho_name : true_ortho_name); },
       .inputs = photo_inputs,
       .products =
           [](const OrthoStageOptions&) {
             const std::string name = product_name<surface>;
-            return std::vector<std::string>{name, name + ".vrt", name + quality + ".vrt"};
+            return std::vector<std::string>{name, name + ".vrt", name + quality + ".vrt", name + image_list};
           }};
 }
 

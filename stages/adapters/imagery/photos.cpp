@@ -2,10 +2,11 @@
 #include "stages/adapters/imagery/photos.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "calib/block/undistort.h"
+#include "core/config/units.h"
 #include "core/error.h"
-#include "io/text/output_file.h"
 
 namespace swath::stages {
 namespace {
@@ -20,7 +21,7 @@ calib::PhotoSource source_of(const Context& context, const io::PhotoFiles& f) {
   const io::Survey& survey = context.survey;
   calib::PhotoSource out{io::resolve(survey, f.folder), {}, f.crs, {}, survey.name};
   const bool by_run = f.orientation.empty();
-  const fs::path by_block = by_run ? context.made(of_block) : fs::path();
+  const fs::path by_block = context.made(of_block);
   if (!by_run)
     out.orientation = io::resolve(survey, f.orientation);
   else
@@ -61,12 +62,7 @@ std::vector<fs::path> photo_inputs(const io::Survey& survey) {
     if (!f.orientation.empty())
       if (const fs::path beside = io::resolve(survey, f.orientation).parent_path() / calib::joint_covariance_file; fs::exists(beside, ec))
         out.push_back(beside);
-    const fs::path folder = io::resolve(survey, f.folder);
-    std::vector<fs::path> photos;
-    for (fs::recursive_directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
-      if (at->is_regular_file(ec)) photos.push_back(at->path());
-    if (ec) io::throw_system_error("cannot read the folder", folder, ec.value());
-    std::sort(photos.begin(), photos.end());
+    const std::vector<fs::path> photos = calib::photographs_in(io::resolve(survey, f.folder));
     out.insert(out.end(), photos.begin(), photos.end());
   }
   return out;
@@ -83,12 +79,37 @@ calib::OrientedImages photos_of(const Context& context) {
   return calib::read_oriented_images(sources, map);
 }
 
-PhotoFindings findings_of(const calib::OrientedImages& images) { return {images.images.size(), images.without_file}; }
+PhotoFindings findings_of(const calib::OrientedImages& images) {
+  return {images.images.size(), images.without_file.size(), images.without_file};
+}
+
+void expect_seen(const calib::OrientedImages& images, const Context& context, const std::vector<TileKey>& tiles, std::uint64_t seen,
+                 std::string_view stage) {
+  if (seen > 0 || tiles.empty()) return;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const TileKey key : tiles) {
+    const Box box = context.box_of(key);
+    middle += Eigen::Vector2d(box.x0 + box.x1, box.y0 + box.y1) / (2.0 * static_cast<double>(tiles.size()));
+  }
+  const auto distance = [&](const calib::OrientedImage& i) { return (i.map.head<2>() - middle).norm(); };
+  const auto nearest =
+      std::min_element(images.images.begin(), images.images.end(),
+                       [&](const calib::OrientedImage& a, const calib::OrientedImage& b) { return distance(a) < distance(b); });
+  throw core::Error(std::string(stage) + ": no photograph sees the survey; the nearest, " + nearest->name + ", was taken " +
+                        core::format_quantity(core::Dimension::length, std::round(distance(*nearest))) +
+                        " from its middle, at a height of " + core::format_quantity(core::Dimension::length, std::round(nearest->map.z())),
+                    context.survey.name, "check the CRS of the orientations, their heights, and omega, phi, kappa");
+}
 
 double photo_memory(const Context& context) {
-  double pixels = 40e6;  // where a table says it
-  for (const io::SurveyCamera& c : context.survey.cameras) pixels = std::max(pixels, static_cast<double>(c.columns) * c.rows);
-  return 3.0 * sizeof(std::uint16_t) * pixels;
+  constexpr double bands = 4.0;
+  double pixels = 0.0;
+  const auto add = [&](int columns, int rows) { pixels = std::max(pixels, static_cast<double>(columns) * rows); };
+  for (const io::SurveyCamera& c : context.survey.cameras) add(c.columns, c.rows);
+  for (const io::PhotoFiles& f : context.survey.photos)
+    if (!f.camera.empty())
+      for (const calib::CameraConfig& c : calib::read_cameras(io::resolve(context.survey, f.camera))) add(c.columns, c.rows);
+  return bands * sizeof(std::uint16_t) * pixels;
 }
 
 }  // namespace swath::stages

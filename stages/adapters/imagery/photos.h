@@ -25,15 +25,20 @@ calib::OrientedImages photos_of(const Context& context);
 
 /// What is known of the photographs.
 struct PhotoFindings {
-  std::uint64_t images = 0;
+  std::uint64_t images = 0, missing = 0;
   std::vector<std::string> without_file{};
 };
 template <class V>
 void describe(const PhotoFindings& r, V& v) {
   v.result("images", r.images, core::plain().in_summary(), "Photographs with an orientation.");
-  v.result("without_file", r.without_file, core::if_any(), "Oriented images that the folder does not have.");
+  v.result("images_without_file", r.missing, core::if_any().in_summary(), "Oriented images that the folder does not have.");
+  v.result("without_file", r.without_file, core::if_any(), "Their names.");
 }
 PhotoFindings findings_of(const calib::OrientedImages& images);
+
+/// Throws core::Error where of `places` none was `seen`: with the nearest image and how far off it is from the middle of the tiles.
+void expect_seen(const calib::OrientedImages& images, const Context& context, const std::vector<TileKey>& tiles, std::uint64_t seen,
+                 std::string_view stage);
 
 /// Bytes that a tile's photographs may take: one at a time.
 double photo_memory(const Context& context);
