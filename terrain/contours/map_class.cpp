@@ -61,17 +61,20 @@ SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double i
   return f;
 }
 
+std::string written_out(double length) {
+  std::array<char, 400> text{};  // of the smallest number, too
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), std::stod(core::format_number(length, 4)), std::chars_format::fixed);
+  return {text.data(), end.ptr};
+}
+
 std::string too_many_levels(const SurfaceFacts& f, double interval, double unit) {
   const double levels = std::floor((f.highest - f.lowest) / interval);
   if (!(levels > max_levels)) return {};
   const std::string name = unit == 1.0 ? " m" : " ft";
   const auto height = [&](double h) { return core::format_number(std::round(h / unit * 10) / 10); };
-  std::array<char, 40> every{};  // 0.00001, not 1e-05
-  const auto end = std::to_chars(every.data(), every.data() + every.size(), std::stod(core::format_number(interval / unit, 4)),
-                                 std::chars_format::fixed);
-  return "contours every " + std::string(every.data(), end.ptr) + name + " between heights of " + height(f.lowest) + " and " +
-         height(f.highest) + name + " are " + core::format_number(levels) + " levels, and at most " + core::format_number(max_levels) +
-         " are drawn";
+  return "contours every " + written_out(interval / unit) + name + " between heights of " + height(f.lowest) + " and " + height(f.highest) +
+         name + " are " + core::format_number(levels) + " levels, and at most " + core::format_number(max_levels) + " are drawn";
 }
 
 double least_interval(const SurfaceFacts& f, double unit) { return unit * usual_interval((f.highest - f.lowest) / max_levels / unit); }

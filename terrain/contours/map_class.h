@@ -47,6 +47,9 @@ SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double i
 /// Contour levels that one map may have: a relief of 4 km every 20 cm. What asks for more has mistaken a unit, and fills the disk.
 inline constexpr double max_levels = 20'000;
 
+/// A length in four digits without an exponent: 0.0005, not 5e-04.
+std::string written_out(double length);
+
 /// Says, with the heights and the number of levels, that contours every `interval` (m) are more than max_levels; empty where they are not.
 /// `unit`: of heights in words, m.
 std::string too_many_levels(const SurfaceFacts& facts, double interval, double unit);

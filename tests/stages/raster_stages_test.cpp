@@ -140,11 +140,12 @@ TEST(RasterStages, ContoursByTheMillimetreAreRefused) {
     reason = core::Void::none;
   };
   const fs::path folder = w.folder / "contours";
-  const std::string said = fault_of([&] { w.run(*stage_with("terrain.contours", "interval = \"0.5 mm\""), {}, 0, 0, folder); });
+  const std::string said =
+      fault_of([&] { w.run(*stage_with("terrain.contours", "interval = \"0.5 mm\"\ntolerance = \"0 m\""), {}, 0, 0, folder); });
   EXPECT_NE(said.find("contours.interval: contours every 0.0005 m between heights of "), std::string::npos) << said;
   EXPECT_FALSE(fs::exists(folder / "0_0.segments"));
   // One tile alone is drawn at 1 mm, two are too much.
-  const auto stage = stage_with("terrain.contours", "interval = \"1 mm\"");
+  const auto stage = stage_with("terrain.contours", "interval = \"1 mm\"\ntolerance = \"0 m\"");
   EXPECT_EQ(fault_of([&] {
               w.run(*stage, {}, 0, 0, folder);
               w.run(*stage, {}, 1, 0, folder);

@@ -269,7 +269,7 @@ void refuse_too_many_levels(const terrain::SurfaceFacts& facts, double interval,
   if (fault.empty()) return;
   const double least = terrain::least_interval(facts, context.vertical_unit), unit = context.vertical_unit;
   throw core::usage_error(fault, "contours.interval",
-                          "state an interval of " + core::format_number(least / unit, 3) + (unit == 1.0 ? " m" : " ft") +
+                          "state an interval of " + terrain::written_out(least / unit) + (unit == 1.0 ? " m" : " ft") +
                               " or more; maps have 0.25 m to 10 m, and what lies below the model's sigma shows its noise");
 }
 

@@ -78,6 +78,9 @@ TEST(MapClass, TooManyLevelsAreNamedWithTheirHeights) {
   const std::string feet = too_many_levels(low, 0.0003048, 0.3048);
   EXPECT_NE(feet.find("every 0.001 ft between heights of 1680.8 and 1841.2 ft"), std::string::npos) << feet;
   EXPECT_EQ(too_many_levels({}, 0.001, 1.0), "");  // no height at all
+  EXPECT_EQ(written_out(5e-4), "0.0005");
+  EXPECT_EQ(written_out(1e-6), "0.000001");
+  EXPECT_EQ(written_out(2.5), "2.5");
 }
 
 }  // namespace
