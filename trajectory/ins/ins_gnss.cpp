@@ -32,7 +32,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
@@ -112,12 +111,13 @@ Trimmed trim(core::ImuData imu, core::GnssData gnss) {
   return {std::move(imu), std::move(gnss)};
 }
 
-/// The path's ends, every fix, and instants between where they are far apart.
-std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, const std::vector<Span>& standstills) {
+/// The path's ends, every fix, and instants between where they are farther apart than `spacing`: between nodes residuals of the
+/// mechanisation are linear in time.
+std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, const std::vector<Span>& standstills, double spacing) {
   std::vector<Node> out{{path.begin(), -1, false}};
-  const auto fill_to = [&out](double t) {
+  const auto fill_to = [&out, spacing](double t) {
     const double from = out.back().time;
-    const double n = std::ceil((t - from) / node_spacing - 1e-6);
+    const double n = std::ceil((t - from) / spacing - 1e-6);
     for (double i = 1; i < n; ++i) out.push_back({from + (t - from) * i / n, -1, false});
   };
   constexpr double same = 1e-6;  // s
@@ -216,7 +216,8 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
                           const core::OnProgress& progress, SmoothedFlight* left) {
   const std::vector<Span> standstills =
       options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
-  const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
+  const std::vector<Node> nodes =
+      nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{}, options.node_spacing.value);
 
   const Layout layout(options.scale_factors, options.lever_arm && lever_arm_sigma > 0, options.correlated_share.value_or(1) > 0,
                       options.gnss_latency, options.non_holonomic);

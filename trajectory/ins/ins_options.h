@@ -44,6 +44,7 @@ struct InsGnssOptions {
   core::Seconds max_gap{10.0};
   core::Hertz output_rate{200.0};
   core::Seconds error_spacing{1.0};
+  core::Seconds node_spacing{0.25};
 };
 
 template <class V>
@@ -70,6 +71,8 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("output_rate", o.output_rate, core::within(20, 2000), "Records per second of the trajectory, where the IMU has more.");
   v.option("error_spacing", o.error_spacing, core::within(0, 60),
            "Spacing at which error correlations in time are kept, for adjustments (30 MB/h at 1 s); 0: none.", "Jong1988");
+  v.option("node_spacing", o.node_spacing, core::within(0.05, 2),
+           "Maximum time between two instants with a state of their own; each fix is one.");
 }
 
 }  // namespace swath::trajectory

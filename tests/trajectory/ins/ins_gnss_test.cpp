@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/ins/ins_gnss.h"
 
+#include "core/records/gnss_columns.h"
 #include "tests/trajectory/ins_run.h"
 
 namespace swath::trajectory {
@@ -274,6 +275,28 @@ TEST(InsGnss, OutputRateDecimates) {
   Trial run;
   run.options.output_rate = core::Hertz(10);
   EXPECT_EQ(run.on(lines_and_turns()).trajectory.size(), 2400u);
+}
+
+TEST(InsGnss, InstantsFartherApartAreFewerAndMoveNothing) {
+  // Fixes at 1 Hz: three instants between each two of them, or one.
+  Trial run = trial_of(ImuGrade::tactical, 2);
+  run.change_gnss = [](core::GnssData& g) {
+    core::for_each_gnss_column([&](auto member) {
+      auto& column = g.*member;
+      for (size_t k = 0; 5 * k < column.size(); ++k) column[k] = column[5 * k];
+      column.resize((column.size() + 4) / 5);
+    });
+  };
+  run.options.error_spacing.value = 0.0;
+  const InsGnssResult near = run.on(lines_and_turns());
+  run.options.node_spacing.value = 0.5;
+  const InsGnssResult far = run.on(lines_and_turns());
+  EXPECT_EQ(near.trajectory.covariance.time.size(), 2 * far.trajectory.covariance.time.size() - 1);
+  ASSERT_EQ(near.trajectory.size(), far.trajectory.size());
+  for (size_t k = 0; k < near.trajectory.size(); ++k) {
+    EXPECT_NEAR(near.trajectory.height[k], far.trajectory.height[k], 1e-3);  // sigma 2 cm
+    EXPECT_NEAR(near.trajectory.roll[k], far.trajectory.roll[k], 1 * arcsec);
+  }
 }
 
 TEST(InsGnss, SameRecordsSameBits) {
