@@ -7,7 +7,7 @@
 
 #include "calib/adjust/robust_weight.h"
 #include "calib/block/block_diagnosis.h"
-#include "calib/block/unfit_points.h"
+#include "calib/block/checks/unfit_points.h"
 #include "core/error.h"
 #include "core/statistics.h"
 

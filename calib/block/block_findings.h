@@ -9,8 +9,8 @@
 
 #include "calib/block/block_adjust.h"
 #include "calib/block/block_reading.h"
+#include "calib/block/checks/unfit_points.h"
 #include "calib/block/navigation/direct_comparison.h"
-#include "calib/block/unfit_points.h"
 #include "core/config/result.h"
 
 namespace swath::calib {

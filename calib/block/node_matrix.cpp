@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/node_matrix.h"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
+
+#include "core/parallel.h"
 
 namespace swath::calib {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 constexpr double least_pivot = 1e-13;
+constexpr Index panel = 48;                // columns of a front that are eliminated one by one
+constexpr Index grain = 64;                // columns of a product that one thread takes at a time
+constexpr double wide_product = 4e6;       // multiplications from which a product is shared by threads
+constexpr double part_of_the_work = 0.05;  // of all: a subtree with less is one thread's
 
 std::vector<int> firsts(const std::vector<int>& sizes) {
   std::vector<int> out{0};
@@ -20,74 +28,52 @@ std::vector<int> firsts(const std::vector<int>& sizes) {
   return out;
 }
 
-/// The nodes in an order that keeps fronts small.
-std::vector<int> minimum_degree(const std::vector<std::vector<int>>& neighbours) {
-  const auto n = static_cast<int>(neighbours.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int a = 0; a < n; ++a) {
-    entries.emplace_back(a, a, 1.0);
-    for (const int b : neighbours[static_cast<size_t>(a)]) entries.emplace_back(a, b, 1.0);
-  }
-  Eigen::SparseMatrix<double> pattern(n, n);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> p;
-  Eigen::AMDOrdering<int>()(pattern, p);
-  return {p.indices().data(), p.indices().data() + n};
-}
-
-/// Of each place the places below it that its elimination touches; the first of them is its parent.
-std::vector<std::vector<int>> fronts_of(const std::vector<std::vector<int>>& neighbours, const std::vector<int>& order) {
-  const size_t n = order.size();
-  std::vector<int> place(n);
-  for (size_t k = 0; k < n; ++k) place[static_cast<size_t>(order[k])] = static_cast<int>(k);
-  std::vector<std::vector<int>> below(n), children(n);
-  for (size_t k = 0; k < n; ++k) {
-    std::vector<int>& mine = below[k];
-    for (const int b : neighbours[static_cast<size_t>(order[k])])
-      if (place[static_cast<size_t>(b)] > static_cast<int>(k)) mine.push_back(place[static_cast<size_t>(b)]);
-    for (const int child : children[k])
-      for (const int p : below[static_cast<size_t>(child)])
-        if (p > static_cast<int>(k)) mine.push_back(p);
-    std::sort(mine.begin(), mine.end());
-    mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
-    if (!mine.empty()) children[static_cast<size_t>(mine.front())].push_back(static_cast<int>(k));
-  }
-  return below;
-}
-
-/// The same elimination in an order where each subtree lies together, so that few fronts are held at a time.
-std::vector<int> depth_first(const std::vector<std::vector<int>>& below, const std::vector<int>& order) {
-  const size_t n = order.size();
-  std::vector<std::vector<int>> children(n);
-  std::vector<int> todo, reversed;
-  for (size_t k = 0; k < n; ++k) {
-    if (below[k].empty())
-      todo.push_back(static_cast<int>(k));
-    else
-      children[static_cast<size_t>(below[k].front())].push_back(static_cast<int>(k));
-  }
-  while (!todo.empty()) {
-    const int k = todo.back();
-    todo.pop_back();
-    reversed.push_back(order[static_cast<size_t>(k)]);
-    for (const int c : children[static_cast<size_t>(k)]) todo.push_back(c);
-  }
-  return {reversed.rbegin(), reversed.rend()};
-}
-
 /// Cholesky factor of the lower triangle in place; pivots that are too small are replaced. Returns the smallest.
 double cholesky(Eigen::Ref<MatrixXd> A) {
   double smallest = 1.0;
-  for (Eigen::Index j = 0; j < A.rows(); ++j) {
-    double squares = 0.0;
-    for (Eigen::Index k = 0; k < j; ++k) squares += A(j, k) * A(j, k);
-    const double pivot = A(j, j) - squares;
-    const double used = pivot > least_pivot ? pivot : least_pivot;
+  const Index n = A.rows();
+  for (Index j = 0; j < n; ++j) {
+    if (j > 0) A.col(j).tail(n - j).noalias() -= A.bottomLeftCorner(n - j, j) * A.row(j).head(j).transpose();
+    const double used = A(j, j) > least_pivot ? A(j, j) : least_pivot;
     smallest = std::min(smallest, used);
     A(j, j) = std::sqrt(used);
-    for (Eigen::Index i = j + 1; i < A.rows(); ++i) A(i, j) = (A(i, j) - A.row(i).head(j).dot(A.row(j).head(j))) / A(j, j);
-    A.col(j).head(j).setZero();
+    A.col(j).tail(n - j - 1) /= A(j, j);
   }
+  return smallest;
+}
+
+/// work(first, last) for columns, side by side where that pays; the parts are the same either way.
+template <class Work>
+void by_columns(Index columns, double multiplications, bool shared, const Work& work) {
+  if (shared && multiplications > wide_product)
+    core::in_parallel(static_cast<size_t>(columns), static_cast<size_t>(grain),
+                      [&](size_t first, size_t last) { work(static_cast<Index>(first), static_cast<Index>(last)); });
+  else
+    for (Index j = 0; j < columns; j += grain) work(j, std::min(columns, j + grain));
+}
+
+/// A -= L L^T, its lower triangle.
+void subtract_square(Eigen::Ref<MatrixXd> A, const Eigen::Ref<const MatrixXd>& L, bool shared) {
+  const Index n = A.rows();
+  by_columns(n, 0.5 * static_cast<double>(n * n * L.cols()), shared, [&](Index j, Index end) {
+    A.block(j, j, n - j, end - j).noalias() -= L.bottomRows(n - j) * L.middleRows(j, end - j).transpose();
+  });
+}
+
+/// Cholesky factor of the first rows of L, and what it makes of those below. Returns the smallest pivot.
+double eliminate(MatrixXd& L, bool shared) {
+  double smallest = 1.0;
+  const Index own = L.cols();
+  for (Index j = 0; j < own; j += panel) {
+    const Index width = std::min(panel, own - j), next = j + width, left = L.rows() - next;
+    smallest = std::min(smallest, cholesky(L.block(j, j, width, width)));
+    auto below = L.block(next, j, left, width);
+    L.block(j, j, width, width).triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    by_columns(own - next, static_cast<double>(left * (own - next) * width), shared, [&](Index k, Index end) {
+      L.block(next + k, next + k, left - k, end - k).noalias() -= below.bottomRows(left - k) * below.middleRows(k, end - k).transpose();
+    });
+  }
+  L.topRows(own).triangularView<Eigen::StrictlyUpper>().setZero();
   return smallest;
 }
 
@@ -99,7 +85,11 @@ void NodeMatrix::add(int a, int b, const Eigen::Ref<const MatrixXd>& M) {
   if (a < b) return add(b, a, M.transpose());
   const auto n = static_cast<size_t>(size(a)) * static_cast<size_t>(size(b));
   const auto [it, is_new] = at_.try_emplace(key(a, b), values_.size());
-  if (is_new) values_.resize(values_.size() + n, 0.0);
+  if (is_new) {
+    // By a quarter at a time: doubled, the blocks of a long flight would take gigabytes that stay empty.
+    if (values_.size() + n > values_.capacity()) values_.reserve(values_.size() + std::max(n, values_.size() / 4));
+    values_.resize(values_.size() + n, 0.0);
+  }
   Eigen::Map<MatrixXd>(values_.data() + it->second, size(a), size(b)) += M;
 }
 
@@ -131,150 +121,205 @@ VectorXd NodeMatrix::diagonal() const {
 NodeFactor::NodeFactor(const NodeMatrix& matrix, double shift) {
   scale_ = matrix.diagonal();
   for (double& s : scale_) s = s > 0.0 ? 1.0 / std::sqrt(s) : 1.0;
-  order(matrix);
-  factorise(matrix, shift);
+  const Neighbours neighbours = matrix.neighbours();
+  std::vector<int> sizes;
+  for (int a = 0; a < matrix.nodes(); ++a) sizes.push_back(matrix.size(a));
+  order_ = order_of(neighbours, sizes);
+  place_.resize(sizes.size());
+  front_at_.resize(sizes.size());
+  first_ = {0};
+  for (size_t k = 0; k < sizes.size(); ++k) {
+    const int node = order_.node[k];
+    place_[static_cast<size_t>(node)] = static_cast<int>(k);
+    first_of_node_.push_back(matrix.first(node));
+    first_.push_back(first_.back() + matrix.size(node));
+  }
+  values_.resize(order_.fronts.size());
+  for (size_t k = 0; k < values_.size(); ++k) {
+    const NodeFront& f = front(k);
+    std::fill(front_at_.begin() + f.first, front_at_.begin() + f.last, static_cast<int>(k));
+    int row = f.own;
+    for (const int p : f.below) values_[k].row.push_back(std::exchange(row, row + size_at(p)));
+  }
+  divide_tree();
+  factorise(matrix, neighbours, shift);
 }
 
-void NodeFactor::order(const NodeMatrix& matrix) {
-  const auto neighbours = matrix.neighbours();
-  std::vector<int> nodes = minimum_degree(neighbours);
-  nodes = depth_first(fronts_of(neighbours, nodes), nodes);
-  const auto below = fronts_of(neighbours, nodes);
-  place_.resize(nodes.size());
-  fronts_.resize(nodes.size());
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    place_[static_cast<size_t>(nodes[k])] = static_cast<int>(k);
-    sizes_.push_back(matrix.size(nodes[k]));
-    first_of_node_.push_back(matrix.first(nodes[k]));
+void NodeFactor::divide_tree() {
+  const std::vector<int> first = order_.subtrees();
+  double all = 0.0;
+  std::vector<double> work(values_.size(), 0.0);
+  for (size_t k = 0; k < work.size(); ++k) {
+    work[k] += front(k).work();
+    all += front(k).work();
+    if (front(k).parent >= 0) work[static_cast<size_t>(front(k).parent)] += work[k];
   }
-  first_ = firsts(sizes_);
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    Front& f = fronts_[k];
-    f.node = nodes[k];
-    f.below = below[k];
-    f.parent = f.below.empty() ? -1 : f.below.front();
-    for (const int p : f.below) f.rows += size_at(p);
+  const auto small = [&](size_t k) { return work[k] <= part_of_the_work * all; };
+  for (size_t k = 0; k < work.size(); ++k) {
+    if (!small(k))
+      trunk_.push_back(k);
+    else if (front(k).parent < 0 || !small(static_cast<size_t>(front(k).parent)))
+      subtrees_.emplace_back(static_cast<size_t>(first[k]), k + 1);
   }
 }
 
-int NodeFactor::row_in(const Front& front, int place) const {
-  int row = 0;
-  for (const int p : front.below) {
-    if (p == place) return row;
-    row += size_at(p);
-  }
-  throw std::logic_error("two nodes without a common front");
+void NodeFactor::from_leaves(const std::function<void(size_t, bool)>& work) const {
+  core::in_parallel(subtrees_.size(), 1, [&](size_t first, size_t last) {
+    for (size_t s = first; s < last; ++s)
+      for (size_t k = subtrees_[s].first; k < subtrees_[s].second; ++k) work(k, false);
+  });
+  for (const size_t k : trunk_) work(k, true);
 }
 
-void NodeFactor::factorise(const NodeMatrix& matrix, double shift) {
-  std::vector<std::vector<int>> children(fronts_.size());
-  std::vector<MatrixXd> rest(fronts_.size());  // what an elimination leaves to those below
-  for (size_t k = 0; k < fronts_.size(); ++k) {
-    Front& f = fronts_[k];
-    const int own = size_at(static_cast<int>(k));
-    MatrixXd A = MatrixXd::Zero(own + f.rows, own + f.rows);
-    const auto scaled = [&](int row_node, int column_node) -> MatrixXd {
-      const bool lower = row_node >= column_node;
-      const auto B = lower ? matrix.block(row_node, column_node) : matrix.block(column_node, row_node);
-      if (B.size() == 0) return {};
-      const auto s_r = scale_.segment(matrix.first(row_node), matrix.size(row_node));
-      const auto s_c = scale_.segment(matrix.first(column_node), matrix.size(column_node));
-      if (lower) return s_r.asDiagonal() * B * s_c.asDiagonal();
-      return s_r.asDiagonal() * B.transpose() * s_c.asDiagonal();
+void NodeFactor::from_root(const std::function<void(size_t, bool)>& work) const {
+  for (size_t i = trunk_.size(); i-- > 0;) work(trunk_[i], true);
+  core::in_parallel(subtrees_.size(), 1, [&](size_t first, size_t last) {
+    for (size_t s = first; s < last; ++s)
+      for (size_t k = subtrees_[s].second; k-- > subtrees_[s].first;) work(k, false);
+  });
+}
+
+int NodeFactor::row_in(size_t number, int place) const {
+  const NodeFront& f = front(number);
+  if (place < f.last) return first_[static_cast<size_t>(place)] - first_[static_cast<size_t>(f.first)];
+  const auto found = std::lower_bound(f.below.begin(), f.below.end(), place);
+  if (found == f.below.end() || *found != place) throw std::logic_error("two nodes without a common front");
+  return values_[number].row[static_cast<size_t>(found - f.below.begin())];
+}
+
+std::vector<int> NodeFactor::rows_in_parent(size_t number) const {
+  const NodeFront& f = front(number);
+  std::vector<int> out;
+  out.reserve(static_cast<size_t>(f.rows));
+  for (const int p : f.below) {
+    const int begin = row_in(static_cast<size_t>(f.parent), p);
+    for (int i = 0; i < size_at(p); ++i) out.push_back(begin + i);
+  }
+  return out;
+}
+
+void NodeFactor::place_columns(const NodeMatrix& matrix, const Neighbours& neighbours, size_t number, MatrixXd& L) const {
+  const NodeFront& f = front(number);
+  for (int p = f.first; p < f.last; ++p) {
+    const int node = order_.node[static_cast<size_t>(p)], column = row_in(number, p);
+    const auto s_c = scale_.segment(matrix.first(node), matrix.size(node));
+    const auto put = [&](int other) {
+      const auto B = node <= other ? matrix.block(other, node) : matrix.block(node, other);
+      if (B.size() == 0) return;
+      const auto s_r = scale_.segment(matrix.first(other), matrix.size(other));
+      auto to = L.block(row_in(number, place_[static_cast<size_t>(other)]), column, s_r.size(), s_c.size());
+      if (node <= other)
+        to = s_r.asDiagonal() * B * s_c.asDiagonal();
+      else
+        to = s_r.asDiagonal() * B.transpose() * s_c.asDiagonal();
     };
-    if (const MatrixXd D = scaled(f.node, f.node); D.size() > 0) A.topLeftCorner(own, own) = D;
-    A.topLeftCorner(own, own).diagonal().array() += shift;
-    int row = own;
-    for (const int p : f.below) {
-      if (const MatrixXd B = scaled(fronts_[static_cast<size_t>(p)].node, f.node); B.size() > 0) A.block(row, 0, size_at(p), own) = B;
-      row += size_at(p);
-    }
-    for (const int c : children[k]) {
-      const Front& child = fronts_[static_cast<size_t>(c)];
-      MatrixXd& R = rest[static_cast<size_t>(c)];
-      std::vector<int> to;  // rows of the child's rest in this front
-      for (const int p : child.below) {
-        const int begin = p == static_cast<int>(k) ? 0 : own + row_in(f, p);
-        for (int i = 0; i < size_at(p); ++i) to.push_back(begin + i);
-      }
-      for (Eigen::Index j = 0; j < R.cols(); ++j)
-        for (Eigen::Index i = j; i < R.rows(); ++i) A(to[static_cast<size_t>(i)], to[static_cast<size_t>(j)]) += R(i, j);
-      R.resize(0, 0);
-    }
-    smallest_pivot_ = std::min(smallest_pivot_, cholesky(A.topLeftCorner(own, own)));
-    f.L11 = A.topLeftCorner(own, own);
-    f.L21 = A.bottomLeftCorner(f.rows, own);
-    f.L11.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(f.L21);
-    rest[k] = A.bottomRightCorner(f.rows, f.rows);
-    rest[k].selfadjointView<Eigen::Lower>().rankUpdate(f.L21, -1.0);
-    if (f.parent >= 0) children[static_cast<size_t>(f.parent)].push_back(static_cast<int>(k));
+    put(node);
+    for (const int other : neighbours[static_cast<size_t>(node)])
+      if (place_[static_cast<size_t>(other)] > p) put(other);
   }
+}
+
+void NodeFactor::factorise(const NodeMatrix& matrix, const Neighbours& neighbours, double shift) {
+  std::vector<std::vector<size_t>> children(values_.size());
+  std::vector<MatrixXd> rests(values_.size());  // what an elimination leaves to the fronts below it
+  std::vector<double> pivot(values_.size(), 1.0);
+  for (size_t k = 0; k < values_.size(); ++k)
+    if (front(k).parent >= 0) children[static_cast<size_t>(front(k).parent)].push_back(k);
+  from_leaves([&](size_t k, bool alone) {
+    const NodeFront& f = front(k);
+    MatrixXd& L = values_[k].L;
+    L = MatrixXd::Zero(f.own + f.rows, f.own);
+    MatrixXd& rest = rests[k] = MatrixXd::Zero(f.rows, f.rows);
+    place_columns(matrix, neighbours, k, L);
+    L.diagonal().array() += shift;
+    for (const size_t c : children[k]) {
+      MatrixXd R;
+      R.swap(rests[c]);
+      const std::vector<int> to = rows_in_parent(c);
+      for (Index j = 0; j < R.cols(); ++j) {
+        const Index column = to[static_cast<size_t>(j)];
+        double* into = column < f.own ? &L(0, column) : &rest(0, column - f.own) - f.own;
+        for (Index i = j; i < R.rows(); ++i) into[to[static_cast<size_t>(i)]] += R(i, j);
+      }
+    }
+    pivot[k] = eliminate(L, alone);
+    subtract_square(rest, L.bottomRows(f.rows), alone);
+  });
+  smallest_pivot_ = std::accumulate(pivot.begin(), pivot.end(), 1.0, [](double a, double b) { return std::min(a, b); });
 }
 
 MatrixXd NodeFactor::solve(const MatrixXd& b) const {
-  std::vector<MatrixXd> x(fronts_.size());
-  const auto s = [&](size_t k) { return scale_.segment(first_of_node_[k], size_at(static_cast<int>(k))); };
-  for (size_t k = 0; k < fronts_.size(); ++k) x[k] = s(k).asDiagonal() * b.middleRows(first_of_node_[k], size_at(static_cast<int>(k)));
-  for (size_t k = 0; k < fronts_.size(); ++k) {
-    const Front& f = fronts_[k];
-    f.L11.triangularView<Eigen::Lower>().solveInPlace(x[k]);
-    int row = 0;
-    for (const int p : f.below) {
-      x[static_cast<size_t>(p)] -= f.L21.middleRows(row, size_at(p)) * x[k];
-      row += size_at(p);
+  MatrixXd x(b.rows(), b.cols());
+  const auto s = [&](size_t p) { return scale_.segment(first_of_node_[p], size_at(static_cast<int>(p))); };
+  for (size_t p = 0; p < place_.size(); ++p)
+    x.middleRows(first_[p], size_at(static_cast<int>(p))) =
+        s(p).asDiagonal() * b.middleRows(first_of_node_[p], size_at(static_cast<int>(p)));
+  const auto own = [&](size_t k) { return x.middleRows(first_[static_cast<size_t>(front(k).first)], front(k).own); };
+  const auto each_below = [&](size_t k, const auto& visit) {
+    for (size_t i = 0; i < front(k).below.size(); ++i) {
+      const int p = front(k).below[i];
+      visit(x.middleRows(first_[static_cast<size_t>(p)], size_at(p)), values_[k].L.middleRows(values_[k].row[i], size_at(p)));
     }
+  };
+  for (size_t k = 0; k < values_.size(); ++k) {
+    auto mine = own(k);
+    values_[k].L.topRows(front(k).own).triangularView<Eigen::Lower>().solveInPlace(mine);
+    each_below(k, [&](auto theirs, const auto& L) { theirs.noalias() -= L * mine; });
   }
-  for (size_t k = fronts_.size(); k-- > 0;) {
-    const Front& f = fronts_[k];
-    int row = 0;
-    for (const int p : f.below) {
-      x[k] -= f.L21.middleRows(row, size_at(p)).transpose() * x[static_cast<size_t>(p)];
-      row += size_at(p);
-    }
-    f.L11.triangularView<Eigen::Lower>().transpose().solveInPlace(x[k]);
+  for (size_t k = values_.size(); k-- > 0;) {
+    auto mine = own(k);
+    each_below(k, [&](const auto& theirs, const auto& L) { mine.noalias() -= L.transpose() * theirs; });
+    values_[k].L.topRows(front(k).own).triangularView<Eigen::Lower>().transpose().solveInPlace(mine);
   }
   MatrixXd out(b.rows(), b.cols());
-  for (size_t k = 0; k < fronts_.size(); ++k) out.middleRows(first_of_node_[k], size_at(static_cast<int>(k))) = s(k).asDiagonal() * x[k];
+  for (size_t p = 0; p < place_.size(); ++p)
+    out.middleRows(first_of_node_[p], size_at(static_cast<int>(p))) =
+        s(p).asDiagonal() * x.middleRows(first_[p], size_at(static_cast<int>(p)));
   return out;
 }
 
 void NodeFactor::invert(Keep keep) {
-  std::vector<MatrixXd> whole(fronts_.size());  // of the inverse over a front, while it has children to come
-  std::vector<int> waiting(fronts_.size(), 0);
-  for (const Front& f : fronts_)
+  std::vector<MatrixXd> whole(values_.size());  // over a front's rows, for its children
+  std::vector<std::atomic<int>> waiting(values_.size());
+  for (const NodeFront& f : order_.fronts)
     if (f.parent >= 0) ++waiting[static_cast<size_t>(f.parent)];
-  for (size_t k = fronts_.size(); k-- > 0;) {
-    Front& f = fronts_[k];
-    const int own = size_at(static_cast<int>(k));
-    MatrixXd Z(own + f.rows, own + f.rows);
+  from_root([&](size_t k, bool alone) {
+    const NodeFront& f = front(k);
+    MatrixXd& L = values_[k].L;
+    MatrixXd& Z = values_[k].Z;
+    MatrixXd W(f.own + f.rows, f.own + f.rows);
     if (f.parent >= 0) {
       const auto parent = static_cast<size_t>(f.parent);
-      std::vector<int> from;
-      for (const int p : f.below) {
-        const int begin = p == f.parent ? 0 : size_at(f.parent) + row_in(fronts_[parent], p);
-        for (int i = 0; i < size_at(p); ++i) from.push_back(begin + i);
-      }
-      Z.bottomRightCorner(f.rows, f.rows) = whole[parent](from, from);
+      const std::vector<int> from = rows_in_parent(k);
+      W.bottomRightCorner(f.rows, f.rows) = whole[parent](from, from);
       if (--waiting[parent] == 0) whole[parent].resize(0, 0);
     }
-    MatrixXd K = f.L21;
-    f.L11.triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(K);
-    const MatrixXd inverse = f.L11.triangularView<Eigen::Lower>().solve(MatrixXd::Identity(own, own));
-    f.Z21.noalias() = -Z.bottomRightCorner(f.rows, f.rows) * K;
-    f.Z11 = inverse.transpose() * inverse - K.transpose() * f.Z21;
-    Z.topLeftCorner(own, own) = f.Z11;
-    Z.bottomLeftCorner(f.rows, own) = f.Z21;
-    Z.topRightCorner(own, f.rows) = f.Z21.transpose();
-    if (waiting[k] > 0) whole[k] = std::move(Z);
-    if (keep == Keep::inverse_alone) f.L11.resize(0, 0), f.L21.resize(0, 0);
-  }
+    const auto L11 = L.topRows(f.own).triangularView<Eigen::Lower>();
+    MatrixXd K = L.bottomRows(f.rows);
+    L11.solveInPlace<Eigen::OnTheRight>(K);
+    const MatrixXd inverse = L11.solve(MatrixXd::Identity(f.own, f.own));
+    if (keep == Keep::inverse_alone) L.resize(0, 0);
+    Z.resize(f.own + f.rows, f.own);
+    auto Z21 = Z.bottomRows(f.rows);
+    by_columns(f.own, static_cast<double>(f.rows) * f.rows * f.own, alone, [&](Index j, Index end) {
+      Z21.middleCols(j, end - j).noalias() = -W.bottomRightCorner(f.rows, f.rows) * K.middleCols(j, end - j);
+    });
+    by_columns(f.own, static_cast<double>(f.rows) * f.own * f.own, alone, [&](Index j, Index end) {
+      auto to = Z.block(0, j, f.own, end - j);
+      to.noalias() = inverse.transpose() * inverse.middleCols(j, end - j);
+      to.noalias() -= K.transpose() * Z21.middleCols(j, end - j);
+    });
+    if (waiting[k] == 0) return;
+    W.leftCols(f.own) = Z;
+    W.topRightCorner(f.own, f.rows) = Z21.transpose();
+    whole[k] = std::move(W);
+  });
 }
 
 MatrixXd NodeFactor::block(int a, int b) const {
-  if (a == b) return fronts_[static_cast<size_t>(a)].Z11;
   if (a < b) return block(b, a).transpose();
-  const Front& f = fronts_[static_cast<size_t>(b)];
-  return f.Z21.middleRows(row_in(f, a), size_at(a));
+  const auto k = static_cast<size_t>(front_at_[static_cast<size_t>(b)]);
+  return values_[k].Z.block(row_in(k, a), row_in(k, b), size_at(a), size_at(b));
 }
 
 MatrixXd NodeFactor::covariance(const std::vector<int>& nodes) const {

@@ -2,15 +2,19 @@
 // A sparse symmetric matrix by blocks: each node (an image, a camera, a set of drifts) has a few unknowns. Factorised by fronts, and
 // inverted on the pattern of its factor, which holds every block between nodes that share an observation or an eliminated point.
 //
-// Sources: multifrontal elimination (Duff and Reid 1983), the sparse part of the inverse (Takahashi et al. 1973), ordering by minimum
-// degree (Eigen's AMD) on the graph of nodes. Unknowns are scaled to a unit diagonal first: a pivot is then the share of an unknown's
-// information that is left when those before it are unknown, too.
+// Sources: multifrontal elimination (Duff and Reid 1983), the sparse part of the inverse (Takahashi et al. 1973), the order and the fronts
+// of calib/block/node_order.h. Unknowns are scaled to a unit diagonal first: a pivot is then the share of an unknown's information that is
+// left when those before it are unknown, too. Subtrees and large fronts are worked on by all threads of the run; the result is the same for
+// any number of them.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
+
+#include "calib/block/node_order.h"
 
 namespace swath::calib {
 
@@ -58,21 +62,30 @@ class NodeFactor {
   Eigen::MatrixXd covariance(const std::vector<int>& nodes) const;
 
  private:
-  struct Front {
-    int node = 0, parent = -1;  // parent: a place in the order
-    std::vector<int> below;     // places in the order, rising
-    int rows = 0;               // of below
-    Eigen::MatrixXd L11, L21;   // of the node's own rows, and of those below
-    Eigen::MatrixXd Z11, Z21;   // of the inverse
+  using Neighbours = std::vector<std::vector<int>>;
+  struct Values {
+    std::vector<int> row;  // first of each place below, counted from the front's own first
+    Eigen::MatrixXd L;     // columns of its own unknowns: their rows, then those below
+    Eigen::MatrixXd Z;     // of the inverse
   };
-  void order(const NodeMatrix& matrix);
-  void factorise(const NodeMatrix& matrix, double shift);
-  int size_at(int place) const { return sizes_[static_cast<size_t>(place)]; }
+  const NodeFront& front(size_t k) const { return order_.fronts[k]; }
+  int size_at(int place) const { return first_[static_cast<size_t>(place) + 1] - first_[static_cast<size_t>(place)]; }
+  int row_in(size_t front, int place) const;
+  /// Rows of a front's places below in its parent.
+  std::vector<int> rows_in_parent(size_t front) const;
+  /// Calls work(front, alone) for all: subtrees side by side, then what is left of the tree one after another; or the other way round.
+  void from_leaves(const std::function<void(size_t, bool)>& work) const;
+  void from_root(const std::function<void(size_t, bool)>& work) const;
+  void factorise(const NodeMatrix& matrix, const Neighbours& neighbours, double shift);
+  void place_columns(const NodeMatrix& matrix, const Neighbours& neighbours, size_t front, Eigen::MatrixXd& L) const;
+  void divide_tree();
   Eigen::MatrixXd block(int a, int b) const;  // of the inverse, scaled; places
-  int row_in(const Front& front, int place) const;
 
-  std::vector<Front> fronts_;  // by place in the order
-  std::vector<int> place_, sizes_, first_, first_of_node_;
+  NodeOrder order_;
+  std::vector<Values> values_;  // by front
+  std::vector<int> place_, front_at_, first_, first_of_node_;
+  std::vector<std::pair<size_t, size_t>> subtrees_;  // fronts of those that are worked on side by side: [first, last)
+  std::vector<size_t> trunk_;                        // the others, rising
   Eigen::VectorXd scale_;
   double smallest_pivot_ = 1.0;
 };

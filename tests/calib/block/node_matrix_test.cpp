@@ -91,6 +91,20 @@ TEST(NodeMatrix, TheInverseAloneIsTheSame) {
   for (const std::vector<int>& clique : m.cliques) EXPECT_EQ(with.covariance(clique), alone.covariance(clique));
 }
 
+TEST(NodeMatrix, FrontsOfManyUnknownsAreInvertedAsWell) {
+  // Nine panels in one front, which threads share.
+  NodeMatrix N({300, 130, 40});
+  const MatrixXd A = MatrixXd::Random(600, N.unknowns()), dense = A.transpose() * A;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b <= a; ++b) N.add(a, b, dense.block(N.first(a), N.first(b), N.size(a), N.size(b)));
+  NodeFactor factor(N);
+  const MatrixXd x = MatrixXd::Random(N.unknowns(), 1);
+  EXPECT_LT((factor.solve(dense * x) - x).cwiseAbs().maxCoeff(), 1e-9);  // condition 1e3
+  factor.invert();
+  const MatrixXd inverse = dense.inverse();
+  EXPECT_LT((factor.covariance({0, 1, 2}) - inverse).cwiseAbs().maxCoeff(), 1e-9 * inverse.cwiseAbs().maxCoeff());
+}
+
 TEST(NodeMatrix, SolvesEquations) {
   const Made m = make(5);
   const NodeMatrix N = m.sparse();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/unfit_points.h"
+#include "calib/block/checks/unfit_points.h"
 
 #include <algorithm>
 #include <cmath>
