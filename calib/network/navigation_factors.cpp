@@ -9,7 +9,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/parallel.h"
 #include "trajectory/ins/ins_start.h"
 
 namespace swath::calib {
@@ -27,6 +29,9 @@ constexpr double least_attitude = 1e-9;                             // rad
 constexpr double least_gyro_bias = 1e-13, least_force_bias = 1e-9;  // rad/s, m/s^2
 constexpr double least_fix = 1e-6;                                  // of its sigma
 constexpr double least_of_prior = 1e-12;                            // of any state: m, m/s, rad, s
+
+constexpr int passages_at_a_time = 1024;  // held until they are visited
+constexpr size_t passages_of_a_part = 32;
 
 VectorXd floor_of(const FlightStates& states, const Layout& l) {
   VectorXd out(static_cast<Eigen::Index>(states.moving().size()));
@@ -65,8 +70,15 @@ void visit_start(const FlightStates& states, const trajectory::Estimate& first, 
 }
 
 /// The equation e_k+1 = transition e_k + (carried less reference) + noise.
-void visit_passage(const FlightStates& states, int to, const trajectory::Passage& passage, const trajectory::Estimate& reference,
-                   const Layout& l, const VectorXd& floor, const NavigationVisit& visit) {
+struct PassageEquation {
+  std::vector<NetworkNormals::Part> parts;
+  MatrixXd W;
+  VectorXd apart;
+  std::optional<Vector3d> rate;
+};
+
+PassageEquation passage_equation(const FlightStates& states, int to, const trajectory::Passage& passage,
+                                 const trajectory::Estimate& reference, const Layout& l, const VectorXd& floor) {
   const std::vector<int>& moving = states.moving();
   const auto n = static_cast<Eigen::Index>(moving.size());
   const trajectory::StateMatrix noise = passage.noise();
@@ -74,7 +86,23 @@ void visit_passage(const FlightStates& states, int to, const trajectory::Passage
   const MatrixXd W = information_of(noise(moving, moving), floor);
   std::vector<NetworkNormals::Part> parts = parts_of(states, to - 1, -passage.transition(moving, Eigen::all));
   parts.emplace_back(to, MatrixXd::Identity(n, n));
-  visit(NavigationKind::imu, parts, W, apart(moving));
+  return {std::move(parts), W, apart(moving), passage.rate};
+}
+
+/// Passages to the instants [first, last), each by itself.
+std::vector<PassageEquation> passage_equations(const trajectory::Problem& problem, const FlightStates& states,
+                                               const std::vector<trajectory::Estimate>& estimates, const VectorXd& floor, int first,
+                                               int last) {
+  std::vector<PassageEquation> out(static_cast<size_t>(last - first));
+  core::in_parallel(out.size(), passages_of_a_part, [&](size_t begin, size_t end) {
+    trajectory::ImuWalk walk(problem.path, problem.nodes[static_cast<size_t>(first) + begin - 1].time);
+    for (size_t i = begin; i < end; ++i) {
+      const size_t at = static_cast<size_t>(first) + i;
+      const trajectory::Passage passage = passage_to(problem, estimates[at - 1], walk, problem.nodes[at].time);
+      out[i] = passage_equation(states, static_cast<int>(at), passage, estimates[at], problem.layout, floor);
+    }
+  });
+  return out;
 }
 
 void weigh_down(Observation<3>& position, const trajectory::FixOutcome& outcome, const Vector3d& place) {
@@ -133,15 +161,20 @@ void each_navigation(const trajectory::Problem& problem, const FlightStates& sta
   const VectorXd floor = floor_of(states, problem.layout);
   VirtualClock clock;
   Vector3d rate = Vector3d::Zero();
-  trajectory::ImuWalk walk(problem.path, problem.nodes.front().time);
-  for (int k = 0; k < states.instants(); ++k) {
+  const auto measured = [&](int k) {
     const auto at = static_cast<size_t>(k);
-    if (k > 0) {
-      const trajectory::Passage passage = passage_to(problem, estimates[at - 1], walk, problem.nodes[at].time);
-      if (passage.rate) rate = *passage.rate;
-      visit_passage(states, k, passage, estimates[at], problem.layout, floor, visit);
-    }
     visit_measured(problem, states, k, estimates[at], rate, outcomes.empty() ? nullptr : &outcomes[at], clock, visit);
+  };
+  measured(0);
+  for (int first = 1; first < states.instants(); first += passages_at_a_time) {
+    const int last = std::min(states.instants(), first + passages_at_a_time);
+    const std::vector<PassageEquation> passages = passage_equations(problem, states, estimates, floor, first, last);
+    for (int k = first; k < last; ++k) {
+      const PassageEquation& p = passages[static_cast<size_t>(k - first)];
+      if (p.rate) rate = *p.rate;
+      visit(NavigationKind::imu, p.parts, p.W, p.apart);
+      measured(k);
+    }
   }
 }
 

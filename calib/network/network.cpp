@@ -40,6 +40,7 @@ double Network::step(const Others& others) {
   add_navigation(*problem_, states_, estimates_, outcomes_, prior_, normals);
   if (others) others(normals);
   squares_ = normals.squares;
+  factor_.reset();  // as large as the new one
   factor_ = std::make_unique<NodeFactor>(normals.N);
   x_ = factor_->solve(normals.b);
   if (!x_.allFinite())

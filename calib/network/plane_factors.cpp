@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "calib/adjust/tie_system.h"
+#include "core/parallel.h"
 #include "core/statistics.h"
 #include "trajectory/ins/ins_smoother.h"
 
@@ -26,6 +27,7 @@ using Eigen::VectorXd;
 
 constexpr double least_range_sigma = 1e-3;  // m: a sigma of zero would leave nothing to weigh by
 constexpr double least_noise_factor = 0.05;
+constexpr size_t planes_at_a_time = 1024, planes_of_a_part = 16;
 const Vector3d damping(1e-4, 1e-2, 1e-2);  // 1 / m^2, 1, 1: of a plane's step where its returns do not hold it; does not bias
 
 CorrectionOptions without_corrections() {
@@ -255,8 +257,9 @@ void PlaneFactors::fit(const trajectory::Trajectory& trajectory, const core::Cal
 
 double PlaneFactors::variance_between(size_t g) const { return surface_ * surface_ + wander_ * turn_[g]; }
 
-PlaneFactors::Rest PlaneFactors::add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const {
-  Rest rest;
+PlaneFactors::Reduced PlaneFactors::reduced(std::uint32_t plane) const {
+  Reduced out;
+  Rest& rest = out.rest;
   for (size_t g = first_group_[plane]; g < first_group_[plane + 1]; ++g)
     if (weight(g) > 0.0 && blocks_[g].used > 0) rest.index.insert(rest.index.end(), blocks_[g].index.begin(), blocks_[g].index.end());
   std::sort(rest.index.begin(), rest.index.end());
@@ -273,21 +276,22 @@ PlaneFactors::Rest PlaneFactors::add_plane(std::uint32_t plane, const FlightStat
     for (Eigen::Index i = 0; i < 3; ++i) at.push_back(m + i);
     N(at, at) += weight(g) * block.N;
     b(at) += weight(g) * block.b;
-    into.squares += weight(g) * block.c;
+    out.squares += weight(g) * block.c;
   }
   for (const ControlRow& row : control_rows({state_.planes[plane]}, 1.0)) {
     const double w = 1.0 / (row.sigma * row.sigma);
     N.bottomRightCorner<3, 3>() += w * row.by * row.by.transpose();
     b.tail<3>() += w * row.f * row.by;
-    into.squares += w * row.f * row.f;
+    out.squares += w * row.f * row.f;
   }
   N.bottomRightCorner<3, 3>().diagonal() += damping;
   rest.inverse = Matrix3d(N.bottomRightCorner<3, 3>()).inverse();
   rest.N_xp = N.topRightCorner(m, 3);
   rest.b = b.tail<3>();
   const MatrixXd gain = rest.N_xp * rest.inverse;
-  scatter(rest, N.topLeftCorner(m, m) - gain * rest.N_xp.transpose(), b.head(m) - gain * rest.b, states, into);
-  return rest;
+  out.N = N.topLeftCorner(m, m) - gain * rest.N_xp.transpose();
+  out.b = b.head(m) - gain * rest.b;
+  return out;
 }
 
 PlaneFactors::Place PlaneFactors::place_of(int number, const FlightStates& states) const {
@@ -319,7 +323,20 @@ void PlaneFactors::scatter(const Rest& rest, const MatrixXd& N, const VectorXd& 
 
 void PlaneFactors::add(const FlightStates& states, NetworkNormals& into) {
   rests_.clear();
-  for (std::uint32_t k = 0; k < state_.planes.size(); ++k) rests_.push_back(add_plane(k, states, into));
+  const size_t planes = state_.planes.size();
+  rests_.resize(planes);
+  std::vector<Reduced> some;
+  for (size_t begin = 0; begin < planes; begin += planes_at_a_time) {
+    some.assign(std::min(planes - begin, planes_at_a_time), {});
+    core::in_parallel(some.size(), planes_of_a_part, [&](size_t first, size_t last) {
+      for (size_t k = first; k < last; ++k) some[k] = reduced(static_cast<std::uint32_t>(begin + k));
+    });
+    for (size_t k = 0; k < some.size(); ++k) {
+      into.squares += some[k].squares;
+      scatter(some[k].rest, some[k].N, some[k].b, states, into);
+      rests_[begin + k] = std::move(some[k].rest);
+    }
+  }
 }
 
 void PlaneFactors::follow(const VectorXd& x, const FlightStates& states) {

@@ -97,7 +97,14 @@ class PlaneFactors {
   void fit_plane(std::uint32_t plane);
   void set_roughness();
   void set_noise();
-  Rest add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const;
+  /// A plane's part of the normal equations without its own unknowns.
+  struct Reduced {
+    Rest rest;
+    Eigen::MatrixXd N;
+    Eigen::VectorXd b;
+    double squares = 0.0;
+  };
+  Reduced reduced(std::uint32_t plane) const;
   void scatter(const Rest& rest, const Eigen::MatrixXd& N, const Eigen::VectorXd& b, const FlightStates& states,
                NetworkNormals& into) const;
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/ins/ins_output.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
+#include "core/parallel.h"
 
 namespace swath::trajectory {
 namespace {
@@ -36,34 +39,39 @@ void append(core::TrajectoryData& out, const NavState& nav, const Eigen::Matrix<
   out.sigma_heading.push_back(sigma(8));
 }
 
-}  // namespace
+constexpr double same_record = 1e-6;  // s
+constexpr size_t intervals_of_a_part = 256;
 
-core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, double rate) {
-  const ImuPath& path = problem.path;
+/// The walk is at the end of a record that is not a bridge, not at a cut.
+bool at_record(const ImuPath& path, const ImuWalk& walk) {
+  return std::abs(walk.time() - path.imu.time[walk.record()]) < same_record && !path.is_bridged(walk.record());
+}
+
+std::uint64_t records_between(const Problem& problem, size_t first, size_t last) {
+  std::uint64_t count = 0;
+  Increment piece;
+  ImuWalk walk(problem.path, problem.nodes[first].time);
+  for (size_t k = first; k < last; ++k)
+    while (walk.next(problem.nodes[k + 1].time, piece)) count += at_record(problem.path, walk) ? 1 : 0;
+  return count;
+}
+
+/// Intervals [first, last) between nodes; `count`: records before them, of which every so many are taken.
+core::TrajectoryData part_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, size_t first, size_t last,
+                             std::uint64_t count, std::uint64_t every) {
   const std::vector<Node>& nodes = problem.nodes;
   core::TrajectoryData out;
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    out.covariance.time.push_back(nodes[k].time);
-    out.covariance.upper.push_back(smoothed[k].covariance);
-  }
-  const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
-  const auto every = static_cast<size_t>(std::max(1.0, std::round(1.0 / (rate * step))));
-  constexpr double same = 1e-6;  // s
-
   std::vector<NavState> between;
-  size_t count = 0;
-  for (size_t k = 0; k + 1 < nodes.size(); ++k) {
+  for (size_t k = first; k < last; ++k) {
     const Estimate& start = smoothed[k].estimate;
     NavState nav = start.nav;
-    ImuWalk walk(path, nodes[k].time);
+    ImuWalk walk(problem.path, nodes[k].time);
     between.clear();
     Increment piece;
     while (walk.next(nodes[k + 1].time, piece)) {
       advance(nav, start.corrected(piece));
       nav.time = walk.time();
-      const size_t record = walk.record();
-      const bool whole = std::abs(walk.time() - path.imu.time[record]) < same;  // not at a cut
-      if (whole && !path.is_bridged(record) && count++ % every == 0) between.push_back(nav);
+      if (at_record(problem.path, walk) && count++ % every == 0) between.push_back(nav);
     }
     const NavState& next = smoothed[k + 1].estimate.nav;
     const double length = nodes[k + 1].time - nodes[k].time;
@@ -77,6 +85,48 @@ core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<Smo
       n.ecef_R_body = core::exp_so3(s * turn) * n.ecef_R_body;
       append(out, n, (1 - s) * a.diagonal() + s * b.diagonal());
     }
+  }
+  return out;
+}
+
+void append(core::TrajectoryData& out, const core::TrajectoryData& part) {
+  using Data = core::TrajectoryData;
+  constexpr std::array doubles{&Data::time,  &Data::latitude, &Data::longitude, &Data::height, &Data::roll,
+                               &Data::pitch, &Data::heading,  &Data::v_north,   &Data::v_east, &Data::v_down};
+  constexpr std::array floats{&Data::sigma_north, &Data::sigma_east,  &Data::sigma_down,
+                              &Data::sigma_roll,  &Data::sigma_pitch, &Data::sigma_heading};
+  const auto add = [&](auto column) { (out.*column).insert((out.*column).end(), (part.*column).begin(), (part.*column).end()); };
+  for (const auto column : doubles) add(column);
+  for (const auto column : floats) add(column);
+}
+
+}  // namespace
+
+core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, double rate) {
+  const ImuPath& path = problem.path;
+  const std::vector<Node>& nodes = problem.nodes;
+  core::TrajectoryData out;
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    out.covariance.time.push_back(nodes[k].time);
+    out.covariance.upper.push_back(smoothed[k].covariance);
+  }
+  const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
+  const auto every = static_cast<std::uint64_t>(std::max(1.0, std::round(1.0 / (rate * step))));
+  const size_t intervals = nodes.empty() ? 0 : nodes.size() - 1, parts = (intervals + intervals_of_a_part - 1) / intervals_of_a_part;
+  std::vector<std::uint64_t> before(parts + 1, 0);  // records before each part
+  if (every > 1) {
+    core::in_parallel(intervals, intervals_of_a_part,
+                      [&](size_t first, size_t last) { before[first / intervals_of_a_part + 1] = records_between(problem, first, last); });
+    for (size_t p = 0; p < parts; ++p) before[p + 1] += before[p];
+  }
+  std::vector<core::TrajectoryData> made(parts);
+  core::in_parallel(intervals, intervals_of_a_part, [&](size_t first, size_t last) {
+    const size_t p = first / intervals_of_a_part;
+    made[p] = part_of(problem, smoothed, first, last, before[p], every);
+  });
+  for (core::TrajectoryData& part : made) {
+    append(out, part);
+    part = {};
   }
   return out;
 }
