@@ -135,7 +135,7 @@ TEST(RasterStages, ContoursTellOfDamagedIntermediateFiles) {
 TEST(RasterStages, ContoursByTheMillimetreAreRefused) {
   Work w;
   w.context.tile_side = 2.0;
-  w.grids.made[Product::dtm] = [](double x, double y, float& height, core::Void& reason) {
+  w.grids.made[Product::dtm] = [](double x, double, float& height, core::Void& reason) {
     height = static_cast<float>(18.0 * x);
     reason = core::Void::none;
   };
