@@ -158,7 +158,8 @@ TEST_F(LaserFiles, TimeWindowsMakeStripsAndLeaveTheTurnsOut) {
   EXPECT_EQ(s[1].line, 9);
   EXPECT_EQ(s[1].records, 11u);
   EXPECT_EQ(tally_.of("records outside every line, left out"), 14u);
-  const core::Value* files = tally_.value().find("records outside every line, left out")->find("files");
+  const core::Value tally = tally_.value();
+  const core::Value* files = tally.find("records outside every line, left out")->find("files");
   ASSERT_TRUE(files);
   EXPECT_EQ(files->items().at(0).find("count")->as_int(), 14);
   EXPECT_EQ(files->items().at(0).find("first_s")->as_number(), 5.0);
