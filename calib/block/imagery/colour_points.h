@@ -24,6 +24,9 @@ void describe(ColourOptions& o, V& v) {
   v.option("hidden", o.hidden, "Points that no camera sees: keep their colour, or black; or nearest, as if nothing hid them.");
 }
 
+/// What is counted, as texts and reports name it.
+inline constexpr const char *coloured_points = "coloured", *hidden_points = "hidden from all cameras";
+
 struct ColourCounts {
   core::Changed coloured;
   core::Kept hidden, outside;
@@ -31,8 +34,8 @@ struct ColourCounts {
 
 template <class V>
 void describe(const ColourCounts& r, V& v) {
-  v.result("coloured", r.coloured, "Points that have the colour of a photograph.");
-  v.result("hidden from all cameras", r.hidden, core::if_any(), "Points behind others on all photographs that would show them.");
+  v.result(coloured_points, r.coloured, "Points that have the colour of a photograph.");
+  v.result(hidden_points, r.hidden, core::if_any(), "Points behind others on all photographs that would show them.");
   v.result("on no photograph", r.outside, core::if_any(), "Points outside all photographs, or seen too obliquely.");
 }
 

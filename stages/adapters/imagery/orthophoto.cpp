@@ -19,15 +19,6 @@ namespace {
 constexpr const char *ortho_name = "images.orthophoto", *true_ortho_name = "images.true_orthophoto", *quality = "_quality",
                      *image_list = "_images.csv";
 
-struct OrthoStageOptions : calib::OrthoOptions {
-  OrthoStageOptions() = default;
-};
-
-template <class V>
-void describe(OrthoStageOptions& o, V& v) {
-  describe(static_cast<calib::OrthoOptions&>(o), v);
-}
-
 /// What a tile took from one photograph.
 struct Share {
   std::uint32_t image = 0;
@@ -92,7 +83,7 @@ void write_shares(const TileJob& job, const calib::Orthophoto& photo, size_t ima
 }
 
 template <const Product& surface>
-calib::OrthoCounts make_tile(const TileJob& job, const Context& context, const In<surface>& model, const OrthoStageOptions& o,
+calib::OrthoCounts make_tile(const TileJob& job, const Context& context, const In<surface>& model, const calib::OrthoOptions& o,
                              RunCache& cache) {
   const calib::OrientedImages& images = cache.get([&] { return photos_of(context); });
   const core::Grid heights = model.over(job.box.grown(o.reach.value + 2.0 * model.cell()));
@@ -128,7 +119,7 @@ OrthoFindings join_tiles(const MergeJob& job, const Context& context, RunCache& 
   return out;
 }
 
-TileMemory ortho_memory(const OrthoStageOptions& o, const Context& c, Product surface) {
+TileMemory ortho_memory(const calib::OrthoOptions& o, const Context& c, Product surface) {
   constexpr double bytes_per_cell = 80.0;  // place, colour and bands, and the copies that are written
   TileMemory out{0.0, window_of(c, surface, 1)};
   for (Raster& r : out.rasters) r.side += 2.0 * o.reach.value;
@@ -138,16 +129,16 @@ TileMemory ortho_memory(const OrthoStageOptions& o, const Context& c, Product su
 }
 
 template <const Product& surface>
-TileExtras<OrthoStageOptions> extras() {
-  return {
-      .memory = [](const OrthoStageOptions& o, const Context& c) { return ortho_memory(o, c, surface); },
-      .check = [](const Context& c, const OrthoStageOptions&) { expect_photos(c, surface == Product::dtm ? ortho_name : true_ortho_name); },
-      .inputs = photo_inputs,
-      .products =
-          [](const OrthoStageOptions&) {
-            const std::string name = product_name<surface>;
-            return std::vector<std::string>{name, name + ".vrt", name + quality + ".vrt", name + image_list};
-          }};
+TileExtras<calib::OrthoOptions> extras() {
+  return {.memory = [](const calib::OrthoOptions& o, const Context& c) { return ortho_memory(o, c, surface); },
+          .check = [](const Context& c,
+                      const calib::OrthoOptions&) { expect_photos(c, surface == Product::dtm ? ortho_name : true_ortho_name); },
+          .inputs = photo_inputs,
+          .products =
+              [](const calib::OrthoOptions&) {
+                const std::string name = product_name<surface>;
+                return std::vector<std::string>{name, name + ".vrt", name + quality + ".vrt", name + image_list};
+              }};
 }
 
 }  // namespace
