@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "core/config/units.h"
 #include "core/printable.h"
@@ -26,6 +27,13 @@ Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& R) {
 int plan_decimals(const Eigen::Vector3d& map) {
   const bool degrees = std::abs(map.x()) <= 360.0 && std::abs(map.y()) <= 90.0;  // more decimals do no harm where they are metres
   return degrees ? 10 : 4;
+}
+
+std::string crs_of_comment(const std::string& text) {
+  constexpr std::string_view key = "crs:";
+  if (!text.starts_with(key)) return {};
+  const size_t begin = text.find_first_not_of(' ', key.size()), end = text.find(';');
+  return begin < end ? text.substr(begin, end - begin) : "";
 }
 
 std::string orientation_header(const std::string& crs) {

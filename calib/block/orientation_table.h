@@ -23,6 +23,9 @@ Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& grid_R_camera);
 /// Decimals of easting and northing: 4; 10 where they are, or may be, degrees.
 int plan_decimals(const Eigen::Vector3d& map);
 
+/// The CRS that a comment above a table states, "crs: EPSG:25832+7837; ...", without the comment's mark; empty where it is another comment.
+std::string crs_of_comment(const std::string& text);
+
 /// Comments with the conventions, and the names of the columns.
 std::string orientation_header(const std::string& crs);
 std::string orientation_line(const std::string& image, const std::string& camera, int strip, const ImageOrientation& orientation);

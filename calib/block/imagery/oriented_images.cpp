@@ -12,6 +12,7 @@
 #include <set>
 
 #include "calib/block/mark_plane.h"
+#include "calib/block/orientation_table.h"
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/crs.h"
@@ -28,16 +29,14 @@ using Eigen::Vector3d;
 
 /// "# crs: EPSG:25832+7837; ..." above the table; empty where no comment says so.
 std::string crs_of_table(const fs::path& file) {
-  constexpr std::string_view key = "# crs: ";
+  constexpr std::string_view mark = "# ";
   std::ifstream in(file);
-  std::string line;
-  while (std::getline(in, line) && line.starts_with('#'))
-    if (line.starts_with(key)) {
-      line = line.substr(key.size(), line.rfind("; omega phi kappa") - key.size());
-      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-      return line;
-    }
-  return {};
+  std::string line, crs;
+  while (crs.empty() && std::getline(in, line) && line.starts_with('#')) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.starts_with(mark)) crs = crs_of_comment(line.substr(mark.size()));
+  }
+  return crs;
 }
 
 std::string lower_case(std::string text) {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 #include <unordered_map>
 
+#include "calib/block/orientation_table.h"
 #include "core/error.h"
 #include "core/geo/same_map.h"
 #include "core/printable.h"
@@ -43,10 +43,7 @@ class CorrelationLines {
 
  private:
   void take_comment(const std::string& text) {
-    constexpr std::string_view key = "crs:";
-    if (!out_.crs.empty() || !text.starts_with(key)) return;
-    const size_t begin = text.find_first_not_of(' ', key.size()), end = text.find(';');
-    if (begin < end) out_.crs = text.substr(begin, end - begin);
+    if (out_.crs.empty()) out_.crs = crs_of_comment(text);
   }
   void take_header(io::DataLine& line) {
     layout_.names = line.fields;

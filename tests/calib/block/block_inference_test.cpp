@@ -12,16 +12,10 @@ namespace {
 
 /// Everything from the dense inverse.
 TEST(BlockInference, CovariancesAndRedundanciesAreThoseOfTheDenseInverse) {
-  test::Making m;
-  m.which.drift = DriftSets::strip;
-  m.attitudes = true;
-  m.camera_sigma.head<3>().setConstant(0.05);
-  ImageBlock block = test::make_block(m).given;
+  ImageBlock block = test::block_with_all_unknowns();
   const LinearBlock l = BlockSystem(block, {}).linearise();
   const int all = l.unknowns + 3 * l.points();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.residual.size()), all);
-  for (size_t row = 0; row < l.residual.size(); ++row)
-    for (size_t k = l.first[row]; k < l.first[row + 1]; ++k) A(static_cast<Eigen::Index>(row), l.column[k]) = l.value[k];
+  const Eigen::MatrixXd A = test::dense_rows(l);
   const Eigen::VectorXd s = A.colwise().norm().cwiseInverse();
   const Eigen::MatrixXd scaled = A * s.asDiagonal();
   const Eigen::MatrixXd C = s.asDiagonal() * (scaled.transpose() * scaled).inverse() * s.asDiagonal();

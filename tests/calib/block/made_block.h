@@ -6,6 +6,7 @@
 #include <random>
 
 #include "calib/block/block_start.h"
+#include "calib/block/block_system.h"
 #include "calib/block/block_theory.h"
 #include "core/geo/frames.h"
 
@@ -103,6 +104,23 @@ inline MadeBlock make_block(const Making& m) {
   start_poses(g);
   intersect_points(g);
   return out;
+}
+
+/// A block with a drift per strip, attitudes and a free principal distance and point.
+inline ImageBlock block_with_all_unknowns() {
+  Making m;
+  m.which.drift = DriftSets::strip;
+  m.attitudes = true;
+  m.camera_sigma.head<3>().setConstant(0.05);
+  return make_block(m).given;
+}
+
+/// Its observation equations as a dense matrix.
+inline Eigen::MatrixXd dense_rows(const LinearBlock& l) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.residual.size()), l.unknowns + 3 * l.points());
+  for (size_t row = 0; row < l.residual.size(); ++row)
+    for (size_t k = l.first[row]; k < l.first[row + 1]; ++k) A(static_cast<Eigen::Index>(row), l.column[k]) = l.value[k];
+  return A;
 }
 
 }  // namespace swath::calib::test

@@ -59,16 +59,10 @@ TEST(HeldValues, FreeValuesAreNotJudged) {
 }
 
 TEST(HeldValues, SquaresAreThoseOfTheDenseSolution) {
-  test::Making m;
-  m.which.drift = DriftSets::strip;
-  m.attitudes = true;
-  m.camera_sigma.head<3>().setConstant(0.05);
-  ImageBlock block = test::make_block(m).given;
+  ImageBlock block = test::block_with_all_unknowns();
   const LinearBlock l = BlockSystem(block, {}).linearise();
   const auto rows = static_cast<Eigen::Index>(l.residual.size());
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows, l.unknowns + 3 * l.points());
-  for (size_t row = 0; row < l.residual.size(); ++row)
-    for (size_t k = l.first[row]; k < l.first[row + 1]; ++k) A(static_cast<Eigen::Index>(row), l.column[k]) = l.value[k];
+  const Eigen::MatrixXd A = test::dense_rows(l);
   Eigen::MatrixXd r(rows, 2);
   for (Eigen::Index k = 0; k < rows; ++k) r.row(k) << std::sin(0.7 * static_cast<double>(k)), l.residual[static_cast<size_t>(k)];
   const Eigen::MatrixXd scaled = A * A.colwise().norm().cwiseInverse().asDiagonal();
