@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* list_name = "tiles.json";
 
-bool is_temporary(const fs::path& file) { return file.filename().string().starts_with(".part-"); }
-
 std::vector<std::string> listed(const fs::path& list) {
   std::vector<std::string> out;
   if (!fs::exists(list)) return out;
@@ -71,7 +69,7 @@ std::vector<fs::path> files_below(const fs::path& made) {
   std::vector<fs::path> files;
   if (!fs::exists(made)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(made))
-    if (entry.is_regular_file() && !is_temporary(entry.path())) files.push_back(fs::relative(entry.path(), made));
+    if (entry.is_regular_file() && !io::is_temporary(entry.path())) files.push_back(fs::relative(entry.path(), made));
   std::sort(files.begin(), files.end());
   return files;
 }

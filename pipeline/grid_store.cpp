@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/paste.h"
+#include "io/text/output_file.h"
 
 namespace swath::pipeline {
 
@@ -34,7 +35,7 @@ void GridStore::add(stages::Product product, std::filesystem::path folder) {
   std::set<std::filesystem::path>& files = files_[product];
   files.clear();
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".grid") files.insert(entry.path());
+    if (entry.path().extension() == ".grid" && !io::is_temporary(entry.path())) files.insert(entry.path());
   if (!files.empty()) cells_[product] = io::read_grid_file(*files.begin()).lattice.cell;
   folders_[product] = std::move(folder);
 }

@@ -34,7 +34,9 @@ constexpr const char *full_hint = "the disk is full: free space there, then run 
                      *limit_hint =
                          "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
 
-std::string temporary_start() { return ".part-" + std::to_string(getpid()) + "-"; }
+constexpr const char* temporary_mark = ".part-";
+
+std::string temporary_start() { return temporary_mark + std::to_string(getpid()) + "-"; }
 
 /// Is a temporary file beside `file` as long as the process may write one? Libraries do not always give the reason.
 bool is_at_size_limit(const std::filesystem::path& file) {
@@ -79,6 +81,8 @@ void throw_write_error(const std::string& what, const std::filesystem::path& fil
   if (says(EFBIG) || is_at_size_limit(file)) throw core::SystemError(what, file.string(), limit_hint);
   throw core::SystemError(what, file.string(), "does the disk work, and is the folder still there? The same command goes on from here");
 }
+
+bool is_temporary(const std::filesystem::path& file) { return file.filename().string().starts_with(temporary_mark); }
 
 OutputFile::OutputFile(std::filesystem::path final_name) : final_(std::move(final_name)) {
   static std::atomic<unsigned> serial{0};

@@ -29,6 +29,9 @@ class OutputFile {
   bool committed_ = false;
 };
 
+/// Has the file a temporary name of an OutputFile? Of a process that is at work, or was killed; nobody else's business.
+bool is_temporary(const std::filesystem::path& file);
+
 /// Writes a small file through OutputFile.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 

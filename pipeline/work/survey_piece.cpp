@@ -41,7 +41,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   fs::remove(folder / partial_name, absent);
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path() != folder / record_name) files.push_back(entry.path());
+    if (entry.is_regular_file() && entry.path() != folder / record_name && !io::is_temporary(entry.path())) files.push_back(entry.path());
   piece.files = piece_files(folder, std::move(files));
   if (!kept) return piece;
   write_record(folder / record_name, {piece.files, core::reported(Account{0, 0, 0, piece.time, piece.tally, piece.findings})});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/grid_store.h"
 
+#include <fstream>
+
 #include "core/error.h"
 #include "tests/world/support.h"
 
@@ -20,6 +22,8 @@ TEST(GridStore, AWindowIsPutTogetherFromTiles) {
         }
       stages::write_grid_tile(folder.path(), {ix, iy}, g);
     }
+  // A process that was killed, or is at work, has begun a tile.
+  std::ofstream(folder.path() / ".part-1-0-0_0.grid") << "swgrid";
   GridStore store(side);
   store.add(stages::Product::dtm, folder.path());
   EXPECT_EQ(store.cell(stages::Product::dtm), cell);
