@@ -13,21 +13,21 @@ FlightStates::FlightStates(const trajectory::Layout& l, size_t instants, int cal
   const auto take = [](std::vector<int>& rows, int first, int n) {
     for (int i = 0; first >= 0 && i < n; ++i) rows.push_back(first + i);
   };
-  for (const int first : {l.position, l.velocity, l.attitude, l.gyro_bias, l.force_bias, l.fix}) take(moving_, first, 3);
+  for (const int first : {l.position, l.attitude, l.velocity, l.gyro_bias, l.force_bias, l.fix}) take(moving_, first, 3);
   for (const int first : {l.gyro_scale, l.force_scale, l.lever}) take(constant_, first, 3);
   take(constant_, l.latency, 1);
   take(constant_, l.track, 2);
 }
 
 std::vector<int> FlightStates::sizes() const {
-  std::vector<int> out(static_cast<size_t>(instants_), static_cast<int>(moving_.size()));
-  out.push_back(static_cast<int>(constant_.size()) + calibration_);
+  std::vector<int> out;
+  for (int node = 0; node <= common(); ++node) out.push_back(size(node));
   return out;
 }
 
 trajectory::StateVector FlightStates::at(int instant, const VectorXd& x) const {
   trajectory::StateVector out(static_cast<Eigen::Index>(moving_.size() + constant_.size()));
-  for (size_t i = 0; i < moving_.size(); ++i) out[moving_[i]] = x[first(instant) + static_cast<Eigen::Index>(i)];
+  for (size_t i = 0; i < moving_.size(); ++i) out[moving_[i]] = x[first(pose(instant)) + static_cast<Eigen::Index>(i)];
   for (size_t i = 0; i < constant_.size(); ++i) out[constant_[i]] = x[first(common()) + static_cast<Eigen::Index>(i)];
   return out;
 }

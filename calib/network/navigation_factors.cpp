@@ -48,11 +48,19 @@ VectorXd floor_of(const FlightStates& states, const Layout& l) {
   return out;
 }
 
+void add_instant(std::vector<NetworkNormals::Part>& parts, int instant, const MatrixXd& moving) {
+  parts.emplace_back(FlightStates::pose(instant), moving.leftCols(FlightStates::pose_size));
+  parts.emplace_back(FlightStates::motion(instant), moving.rightCols(moving.cols() - FlightStates::pose_size));
+}
+
 /// Columns of a design over the layout, those of an instant and those of the constants; the calibration has none.
 std::vector<NetworkNormals::Part> parts_of(const FlightStates& states, int instant, const MatrixXd& design) {
   MatrixXd common = MatrixXd::Zero(design.rows(), states.calibration_first() + states.calibration_size());
   common.leftCols(states.calibration_first()) = design(Eigen::all, states.constant());
-  return {{instant, design(Eigen::all, states.moving())}, {states.common(), std::move(common)}};
+  std::vector<NetworkNormals::Part> out;
+  add_instant(out, instant, design(Eigen::all, states.moving()));
+  out.emplace_back(states.common(), std::move(common));
+  return out;
 }
 
 template <int Rows>
@@ -85,7 +93,7 @@ PassageEquation passage_equation(const FlightStates& states, int to, const traje
   const trajectory::StateVector apart = passage.carried.minus(reference, l);
   const MatrixXd W = information_of(noise(moving, moving), floor);
   std::vector<NetworkNormals::Part> parts = parts_of(states, to - 1, -passage.transition(moving, Eigen::all));
-  parts.emplace_back(to, MatrixXd::Identity(n, n));
+  add_instant(parts, to, MatrixXd::Identity(n, n));
   return {std::move(parts), W, apart(moving), passage.rate};
 }
 

@@ -67,14 +67,13 @@ std::vector<trajectory::SmoothedNode> Network::smoothed() const {
   const trajectory::Layout& l = problem_->layout;
   const VectorXd common = factor_->covariance({states_.common()}).diagonal().cwiseMax(0.0).cwiseSqrt();
   std::vector<trajectory::SmoothedNode> out(estimates_.size());
+  MatrixXd C = MatrixXd::Zero(l.size, l.size);  // in the layout's order
   for (int k = 0; k < states_.instants(); ++k) {
     trajectory::SmoothedNode& node = out[static_cast<size_t>(k)];
     node.estimate = estimates_[static_cast<size_t>(k)];
-    const MatrixXd C = factor_->covariance({k});
+    C(states_.moving(), states_.moving()) = factor_->covariance({states_.pose(k), states_.motion(k)});
     node.covariance = core::CovarianceSeries::pack(local_covariance(node.estimate.nav, C.topLeftCorner<9, 9>()));
-    node.sigma.resize(l.size);
-    for (size_t i = 0; i < states_.moving().size(); ++i)
-      node.sigma[states_.moving()[i]] = std::sqrt(std::max(0.0, C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))));
+    node.sigma = C.diagonal().cwiseMax(0.0).cwiseSqrt();
     for (size_t i = 0; i < states_.constant().size(); ++i) node.sigma[states_.constant()[i]] = common[static_cast<Eigen::Index>(i)];
   }
   return out;

@@ -296,7 +296,7 @@ PlaneFactors::Reduced PlaneFactors::reduced(std::uint32_t plane) const {
 
 PlaneFactors::Place PlaneFactors::place_of(int number, const FlightStates& states) const {
   if (number >= calibration_number()) return {states.common(), states.calibration_first() + number - calibration_number()};
-  return {number / 6, number % 6 < 3 ? number % 6 : number % 6 + 3};  // velocity lies between position and attitude
+  return {states.pose(number / 6), number % 6};
 }
 
 void PlaneFactors::scatter(const Rest& rest, const MatrixXd& N, const VectorXd& b, const FlightStates& states, NetworkNormals& into) const {

@@ -23,9 +23,12 @@ TEST(FlightStates, EachRowOfTheLayoutHasOnePlace) {
     rows.insert(states.constant().begin(), states.constant().end());
     EXPECT_EQ(rows.size(), static_cast<size_t>(l.size));
     EXPECT_EQ(states.moving().size() + states.constant().size(), static_cast<size_t>(l.size));
-    for (int i = 0; i < 15; ++i) EXPECT_EQ(states.moving()[static_cast<size_t>(i)], i);
+    const std::vector<int> pose{0, 1, 2, 6, 7, 8};
+    EXPECT_TRUE(std::equal(pose.begin(), pose.end(), states.moving().begin()));
     const std::vector<int> sizes = states.sizes();
-    ASSERT_EQ(sizes.size(), 4u);
+    ASSERT_EQ(sizes.size(), 7u);
+    EXPECT_EQ(sizes[static_cast<size_t>(states.pose(2))], 6);
+    EXPECT_EQ(sizes[static_cast<size_t>(states.motion(2))], static_cast<int>(states.moving().size()) - 6);
     EXPECT_EQ(sizes.back(), l.size - static_cast<int>(states.moving().size()) + 2);
 
     // An error put into the unknowns comes back in the layout's order.

@@ -64,7 +64,7 @@ TEST(NavigationFactors, FixesThatTheSmootherWeighedDownAreWeighedDown) {
     add_navigation(*made.flight.problem, states, made.reference, outcomes, made.prior(), normals);
     NodeFactor factor(normals.N);
     factor.invert();
-    return factor.covariance({states.instants() / 2}).topLeftCorner<3, 3>().trace();
+    return factor.covariance({states.pose(states.instants() / 2)}).topLeftCorner<3, 3>().trace();
   };
   const double before = variance();
   for (trajectory::FixOutcome& o : outcomes) o.weight = 0.01;

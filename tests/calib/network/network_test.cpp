@@ -53,9 +53,9 @@ TEST(Network, ASmallOneIsTheDenseSolution) {
   for (const int k : {1, 5, 9}) {
     MatrixXd common = MatrixXd::Zero(2, normals.N.size(states.common()));
     common.rightCols(2) << 1, 0.5, -0.3 * k, 1;
-    MatrixXd own = MatrixXd::Zero(2, normals.N.size(k));
+    MatrixXd own = MatrixXd::Zero(2, FlightStates::pose_size);
     own.leftCols(2).setIdentity();
-    normals.add({{k, own}, {states.common(), common}}, 400 * MatrixXd::Identity(2, 2), Eigen::Vector2d(0.03, -0.02));
+    normals.add({{states.pose(k), own}, {states.common(), common}}, 400 * MatrixXd::Identity(2, 2), Eigen::Vector2d(0.03, -0.02));
   }
   const NodeMatrix& N = normals.N;
   MatrixXd dense = MatrixXd::Zero(N.unknowns(), N.unknowns());
@@ -77,9 +77,10 @@ TEST(Network, ASmallOneIsTheDenseSolution) {
   EXPECT_LT((x - expected).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), same);
   double apart = 0;
   for (int k = 0; k + 1 < states.instants(); ++k) {
-    const MatrixXd C = factor.covariance({k, k + 1, states.common()});
+    const std::vector<int> nodes{states.pose(k), states.motion(k), states.pose(k + 1), states.motion(k + 1), states.common()};
+    const MatrixXd C = factor.covariance(nodes);
     std::vector<int> rows;
-    for (const int node : {k, k + 1, states.common()})
+    for (const int node : nodes)
       for (int i = 0; i < N.size(node); ++i) rows.push_back(N.first(node) + i);
     const VectorXd s = sigma(rows).cwiseInverse();
     apart = std::max(apart, (s.asDiagonal() * (C - inverse(rows, rows)) * s.asDiagonal()).cwiseAbs().maxCoeff());

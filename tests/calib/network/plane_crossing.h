@@ -36,8 +36,9 @@ struct Crossing {
     for (int k = 0; k < states->instants(); ++k) {
       // Slow, so that the cubic through the trajectory's records does not round the corners at the instants.
       const double s = 0.4 * (times[static_cast<size_t>(k)] - world.start);
-      error.segment<3>(states->first(k)) = 0.05 * size * Eigen::Vector3d(std::sin(s), std::cos(s), std::sin(s + 2));
-      error.segment<3>(states->first(k) + 6) = 2e-4 * size * Eigen::Vector3d(std::cos(s + 1), std::sin(s + 3), std::cos(s));
+      const auto first = states->first(states->pose(k));
+      error.segment<3>(first) = 0.05 * size * Eigen::Vector3d(std::sin(s), std::cos(s), std::sin(s + 2));
+      error.segment<3>(first + 3) = 2e-4 * size * Eigen::Vector3d(std::cos(s + 1), std::sin(s + 3), std::cos(s));
     }
     calibration = world.truth;
     const double steps[] = {2e-4, -3e-4, 4e-4, 0.03, 0.02, 1e-4};
@@ -54,9 +55,9 @@ struct Crossing {
       const auto k = std::clamp<std::ptrdiff_t>(next - 1, 0, static_cast<std::ptrdiff_t>(times.size()) - 2);
       const auto at = static_cast<size_t>(k);
       const double s = std::clamp((d.time[i] - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
-      const auto first = states->first(static_cast<int>(k)), second = states->first(static_cast<int>(k) + 1);
+      const auto first = states->first(states->pose(static_cast<int>(k))), second = states->first(states->pose(static_cast<int>(k) + 1));
       const Eigen::Vector3d shift = (1 - s) * error.segment<3>(first) + s * error.segment<3>(second);
-      const Eigen::Vector3d turn = (1 - s) * error.segment<3>(first + 6) + s * error.segment<3>(second + 6);
+      const Eigen::Vector3d turn = (1 - s) * error.segment<3>(first + 3) + s * error.segment<3>(second + 3);
       const core::Geodetic g{d.latitude[i], d.longitude[i], d.height[i]};
       const Eigen::Matrix3d R =
           core::exp_so3(-turn) * core::ecef_R_ned(g.latitude, g.longitude) * core::matrix_of({d.roll[i], d.pitch[i], d.heading[i]});
