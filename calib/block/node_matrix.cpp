@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "calib/block/dense_product.h"
 #include "core/parallel.h"
 
 namespace swath::calib {
@@ -56,7 +57,8 @@ void by_columns(Index columns, double multiplications, bool shared, const Work& 
 void subtract_square(Eigen::Ref<MatrixXd> A, const Eigen::Ref<const MatrixXd>& L, bool shared) {
   const Index n = A.rows();
   by_columns(n, 0.5 * static_cast<double>(n * n * L.cols()), shared, [&](Index j, Index end) {
-    A.block(j, j, n - j, end - j).noalias() -= L.bottomRows(n - j) * L.middleRows(j, end - j).transpose();
+    subtract_product(A.block(j, j, n - j, end - j), MatrixView::of(L.bottomRows(n - j)),
+                     MatrixView::of(L.middleRows(j, end - j)).transposed());
   });
 }
 
@@ -70,7 +72,8 @@ double eliminate(MatrixXd& L, bool shared) {
     auto below = L.block(next, j, left, width);
     L.block(j, j, width, width).triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
     by_columns(own - next, static_cast<double>(left * (own - next) * width), shared, [&](Index k, Index end) {
-      L.block(next + k, next + k, left - k, end - k).noalias() -= below.bottomRows(left - k) * below.middleRows(k, end - k).transpose();
+      subtract_product(L.block(next + k, next + k, left - k, end - k), MatrixView::of(below.bottomRows(left - k)),
+                       MatrixView::of(below.middleRows(k, end - k)).transposed());
     });
   }
   L.topRows(own).triangularView<Eigen::StrictlyUpper>().setZero();
@@ -299,15 +302,17 @@ void NodeFactor::invert(Keep keep) {
     L11.solveInPlace<Eigen::OnTheRight>(K);
     const MatrixXd inverse = L11.solve(MatrixXd::Identity(f.own, f.own));
     if (keep == Keep::inverse_alone) L.resize(0, 0);
-    Z.resize(f.own + f.rows, f.own);
+    Z.setZero(f.own + f.rows, f.own);
     auto Z21 = Z.bottomRows(f.rows);
     by_columns(f.own, static_cast<double>(f.rows) * f.rows * f.own, alone, [&](Index j, Index end) {
-      Z21.middleCols(j, end - j).noalias() = -W.bottomRightCorner(f.rows, f.rows) * K.middleCols(j, end - j);
+      subtract_product(Z21.middleCols(j, end - j), MatrixView::of(W.bottomRightCorner(f.rows, f.rows)),
+                       MatrixView::of(K.middleCols(j, end - j)));
     });
     by_columns(f.own, static_cast<double>(f.rows) * f.own * f.own, alone, [&](Index j, Index end) {
       auto to = Z.block(0, j, f.own, end - j);
-      to.noalias() = inverse.transpose() * inverse.middleCols(j, end - j);
-      to.noalias() -= K.transpose() * Z21.middleCols(j, end - j);
+      subtract_product(to, MatrixView::of(inverse).transposed(), MatrixView::of(inverse.middleCols(j, end - j)));
+      to = -to;
+      subtract_product(to, MatrixView::of(K).transposed(), MatrixView::of(Z21.middleCols(j, end - j)));
     });
     if (waiting[k] == 0) return;
     W.leftCols(f.own) = Z;
