@@ -18,6 +18,13 @@ namespace {
 
 std::string at_record(const std::string& where, size_t record) { return where + ": record " + std::to_string(record); }
 
+void check_times(const std::vector<double>& time, const std::string& where) {
+  for (size_t i = 1; i < time.size(); ++i)
+    if (time[i] <= time[i - 1])
+      throw core::Error("time does not increase: " + core::format_number(time[i]) + " s after " + core::format_number(time[i - 1]) + " s",
+                        at_record(where, i), "sort the file by time and remove doubled records");
+}
+
 void check(const core::TrajectoryData& d, const std::string& where) {
   const size_t n = d.size();
   const auto whole = [&](const auto& column, const char* name, bool optional) {
@@ -45,11 +52,7 @@ void check(const core::TrajectoryData& d, const std::string& where) {
     if (std::abs(d.latitude[i]) > pole)
       throw core::Error("latitude is beyond the pole: " + core::format_number(d.latitude[i]) + " rad", at_record(where, i),
                         "latitudes, longitudes and angles are radians inside: state the unit of the file's columns");
-  for (size_t i = 1; i < n; ++i)
-    if (d.time[i] <= d.time[i - 1])
-      throw core::Error(
-          "time does not increase: " + core::format_number(d.time[i]) + " s after " + core::format_number(d.time[i - 1]) + " s",
-          at_record(where, i), "sort the file by time and remove doubled records");
+  check_times(d.time, where);
 }
 
 // Coefficients of powers of (t - origin) of the polynomial through n <= 4 points (Newton's divided differences, then expanded).
@@ -91,6 +94,18 @@ Trajectory::Trajectory(core::TrajectoryData data, const TrajectoryOptions& optio
     attitude_.push_back(core::ecef_R_ned(data_.latitude[i], data_.longitude[i]) *
                         core::matrix_of({data_.roll[i], data_.pitch[i], data_.heading[i]}));
   }
+  find_spans(options, where);
+}
+
+Trajectory::Trajectory(PoseRecords records, const TrajectoryOptions& options, const std::string& where)
+    : ecef_(std::move(records.position)), attitude_(std::move(records.ecef_R_body)) {
+  data_.time = std::move(records.time);
+  check_times(data_.time, where);
+  find_spans(options, where);
+}
+
+void Trajectory::find_spans(const TrajectoryOptions& options, const std::string& where) {
+  const size_t n = data_.size();
   span_of_.assign(n, -1);
   const double longest = options.max_gap.value + time_rounding;
   for (size_t first = 0; first < n;) {

@@ -29,6 +29,13 @@ struct Pose {
   Eigen::Vector3d rate;         ///< rotation of body relative to ecef, body axes, rad/s
 };
 
+/// Columns of poses by time: s, ecef m, attitude.
+struct PoseRecords {
+  std::vector<double> time;
+  std::vector<Eigen::Vector3d> position;
+  std::vector<Eigen::Matrix3d> ecef_R_body;
+};
+
 /// One-sigma uncertainties at one instant: m and rad.
 struct PoseSigma {
   double north = 0.0, east = 0.0, down = 0.0, roll = 0.0, pitch = 0.0, heading = 0.0;
@@ -61,6 +68,8 @@ class Trajectory {
   /// Throws core::Error{where: "<where>: record N"} where times do not increase, a value is not finite, columns differ in length, or no two
   /// records are close enough to make a span.
   explicit Trajectory(core::TrajectoryData data, const TrajectoryOptions& options = {}, const std::string& where = "trajectory");
+  /// Through poses as they are, without sigmas; of data() it has the times alone. Times must increase and values be finite.
+  explicit Trajectory(PoseRecords records, const TrajectoryOptions& options = {}, const std::string& where = "trajectory");
 
   const std::vector<Span>& spans() const { return spans_; }
   bool covers(double t) const { return interval_at(t) >= 0; }
@@ -77,6 +86,8 @@ class Trajectory {
   PoseSigma sigma_in(long first_record, double t) const;
 
  private:
+  void find_spans(const TrajectoryOptions& options, const std::string& where);
+
   core::TrajectoryData data_;
   std::vector<Eigen::Vector3d> ecef_;
   std::vector<Eigen::Matrix3d> attitude_;  // ecef_R_body

@@ -20,6 +20,8 @@ using Eigen::VectorXd;
 constexpr double planes_settled = 0.2;     // sigmas of all unknowns together
 constexpr double steady_returns = 0.005;   // m: planes are found the same way with returns that have moved by less
 constexpr double closest_mismatch = 0.05;  // m
+constexpr double least_margin = 0.25;      // s of the trajectory about returns
+constexpr double records_of_margin = 4.0;  // what a cubic takes of them on either side, and one more
 constexpr double usual_network_rounds = 3.0, search_part = 0.3;
 constexpr double first_part = 0.6;  // of the iterations, before groups are weighed
 constexpr int most_updates = 12;    // of the surfaces' sigma in one round
@@ -61,10 +63,11 @@ class NetworkRounds {
   }
 
   /// Through the present estimates, without covariances.
-  trajectory::Trajectory trajectory() const {
-    std::vector<trajectory::SmoothedNode> nodes(network_.estimates().size());
-    for (size_t k = 0; k < nodes.size(); ++k) nodes[k] = {network_.estimates()[k], {}, {}};
-    return trajectory::Trajectory(trajectory_of(problem_, nodes, options_.smoother.output_rate.value), interpolation_, "calib.network");
+  trajectory::Trajectory trajectory() const { return through(std::vector<char>(network_.estimates().size() - 1, 1)); }
+  /// Where the planes' returns are.
+  trajectory::Trajectory trajectory(const PlaneFactors& planes) const {
+    const double margin = std::max(least_margin, records_of_margin / options_.smoother.output_rate.value);
+    return through(planes.intervals(calibration(), margin));
   }
 
   PlaneFactors factors(const TieSet& ties) const {
@@ -77,7 +80,7 @@ class NetworkRounds {
     for (int i = 0; i < options_.iterations; ++i) {
       const bool weigh = started_weighing_ || i >= static_cast<int>(first_part * options_.iterations);
       const double moved = network_.step([&](NetworkNormals& into) {
-        planes.linearise(trajectory(), calibration());
+        planes.linearise(trajectory(planes), calibration());
         if (weigh) planes.weigh();
         planes.add(network_.states(), into);
         add_start_values(into);
@@ -144,6 +147,11 @@ class NetworkRounds {
   }
 
  private:
+  trajectory::Trajectory through(const std::vector<char>& intervals) const {
+    return trajectory::Trajectory(poses_of(problem_, network_.estimates(), options_.smoother.output_rate.value, intervals), interpolation_,
+                                  "calib.network");
+  }
+
   void add_start_values(NetworkNormals& into) const {
     const auto n = static_cast<Eigen::Index>(unknown_.size());
     if (n == 0) return;
@@ -229,17 +237,20 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
   core::Tally of_round;
   for (out.rounds = 1;; ++out.rounds) {
     of_round = {};
-    const trajectory::Trajectory now = out.rounds == 1 ? *flight.trajectory : rounds.trajectory();
     const std::string round = "round " + std::to_string(out.rounds);
     progress(core::usual_share(out.rounds - 1, usual_network_rounds), round + ": planes");
-    out.ties = find_tie_planes(flight.shots, flight.scanner, rounds.calibration(), now, flight.frame, targets, planes, of_round);
+    const auto seek = [&](const trajectory::Trajectory& now) {
+      out.ties = find_tie_planes(flight.shots, flight.scanner, rounds.calibration(), now, flight.frame, targets, planes, of_round);
+    };
+    seek(out.rounds == 1 ? *flight.trajectory : rounds.trajectory());
     refuse_without_common_planes(out.ties, of_round);
     progress(core::usual_share(out.rounds - 1 + search_part, usual_network_rounds), round + ": adjustment");
     PlaneFactors factors = rounds.factors(out.ties);
     const core::Calibration start = rounds.calibration();
+    const trajectory::Trajectory now = rounds.trajectory(factors);
     factors.fit(now, start);
     out.settled = rounds.adjust(factors, out.rounds == 1 && options.rounds > 1 ? 1 : most_rejections, out.iterations);
-    const trajectory::Trajectory moved = rounds.trajectory();
+    const trajectory::Trajectory moved = rounds.trajectory(factors);
     out.after = misfits_of(factors, moved, rounds.calibration());
     out.last_move = moved_by(refitted(factors, now, start), refitted(factors, moved, rounds.calibration()));
     out.left_out = factors.left_out();

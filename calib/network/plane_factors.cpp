@@ -189,6 +189,16 @@ void PlaneFactors::linearise_group(Worker& w, size_t number) {
   fill_block(w, number, median);
 }
 
+std::vector<char> PlaneFactors::intervals(const core::Calibration& calibration, double margin) const {
+  std::vector<char> out(times_.size() - 1, 0);
+  const ShotGeometry geometry(*scanner_, calibration);
+  for (const TieGroup& g : ties_->groups) {
+    const int last = interval_at(geometry.time(ties_->returns.time[g.end - 1]) + margin);
+    for (int k = interval_at(geometry.time(ties_->returns.time[g.begin]) - margin); k <= last; ++k) out[static_cast<size_t>(k)] = 1;
+  }
+  return out;
+}
+
 void PlaneFactors::linearise(const trajectory::Trajectory& trajectory, const core::Calibration& calibration) {
   problem_.trajectory = &trajectory;
   problem_.knots = &no_knots_;  // of this copy

@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Covariance = Eigen::Matrix<double, 9, 9>;
 
 void append(core::TrajectoryData& out, const NavState& nav, const Eigen::Matrix<double, 9, 1>& variance) {
   const core::Geodetic g = core::geodetic_of(nav.position);
@@ -47,47 +48,78 @@ bool at_record(const ImuPath& path, const ImuWalk& walk) {
   return std::abs(walk.time() - path.imu.time[walk.record()]) < same_record && !path.is_bridged(walk.record());
 }
 
-std::uint64_t records_between(const Problem& problem, size_t first, size_t last) {
-  std::uint64_t count = 0;
-  Increment piece;
-  ImuWalk walk(problem.path, problem.nodes[first].time);
-  for (size_t k = first; k < last; ++k)
-    while (walk.next(problem.nodes[k + 1].time, piece)) count += at_record(problem.path, walk) ? 1 : 0;
-  return count;
-}
+/// Which of the IMU's records make an output at no more than a rate: every so many, counted from the flight's first.
+class Thinning {
+ public:
+  Thinning(const Problem& problem, double rate) {
+    const ImuPath& path = problem.path;
+    const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
+    every_ = static_cast<std::uint64_t>(std::max(1.0, std::round(1.0 / (rate * step))));
+    const size_t intervals = problem.nodes.size() - 1, parts = (intervals + intervals_of_a_part - 1) / intervals_of_a_part;
+    before_.assign(parts + 1, 0);
+    if (every_ == 1) return;
+    core::in_parallel(intervals, intervals_of_a_part, [&](size_t first, size_t last) {
+      std::uint64_t& count = before_[first / intervals_of_a_part + 1];
+      Increment piece;
+      ImuWalk walk(path, problem.nodes[first].time);
+      for (size_t k = first; k < last; ++k)
+        while (walk.next(problem.nodes[k + 1].time, piece)) count += at_record(path, walk) ? 1 : 0;
+    });
+    for (size_t p = 0; p < parts; ++p) before_[p + 1] += before_[p];
+  }
+  size_t parts() const { return before_.size() - 1; }
+  bool takes_all() const { return every_ == 1; }
+  std::uint64_t before(size_t part) const { return before_[part]; }
+  bool takes(std::uint64_t record) const { return record % every_ == 0; }
 
-/// Intervals [first, last) between nodes; `count`: records before them, of which every so many are taken.
-core::TrajectoryData part_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, size_t first, size_t last,
-                             std::uint64_t count, std::uint64_t every) {
-  const std::vector<Node>& nodes = problem.nodes;
-  core::TrajectoryData out;
-  std::vector<NavState> between;
-  for (size_t k = first; k < last; ++k) {
-    const Estimate& start = smoothed[k].estimate;
+ private:
+  std::uint64_t every_ = 1;
+  std::vector<std::uint64_t> before_;  ///< records before each part; where all are taken nobody counts
+};
+
+/// Gives the output's states of one interval after another, moved so that they end at the next node. One per part of the intervals.
+class Between {
+ public:
+  Between(const Problem& problem, const Thinning& thinning, size_t part)
+      : problem_(problem), thinning_(thinning), count_(thinning.before(part)) {}
+
+  /// From node k on; valid until the next call.
+  const std::vector<NavState>& states(size_t k, const Estimate& start, const NavState& next) {
+    const std::vector<Node>& nodes = problem_.nodes;
     NavState nav = start.nav;
-    ImuWalk walk(problem.path, nodes[k].time);
-    between.clear();
+    ImuWalk walk(problem_.path, nodes[k].time);
+    states_.clear();
     Increment piece;
     while (walk.next(nodes[k + 1].time, piece)) {
       advance(nav, start.corrected(piece));
       nav.time = walk.time();
-      if (at_record(problem.path, walk) && count++ % every == 0) between.push_back(nav);
+      if (at_record(problem_.path, walk) && thinning_.takes(count_++)) states_.push_back(nav);
     }
-    const NavState& next = smoothed[k + 1].estimate.nav;
     const double length = nodes[k + 1].time - nodes[k].time;
     const Vector3d position = next.position - nav.position, velocity = next.velocity - nav.velocity;
     const Vector3d turn = core::log_so3(next.ecef_R_body * nav.ecef_R_body.transpose());
-    const auto a = core::CovarianceSeries::unpack(smoothed[k].covariance), b = core::CovarianceSeries::unpack(smoothed[k + 1].covariance);
-    for (NavState& n : between) {
+    for (NavState& n : states_) {
       const double s = (n.time - nodes[k].time) / length;
       n.position += (3 - 2 * s) * s * s * position + (s - 1) * s * s * length * velocity;
       n.velocity += s * velocity;
       n.ecef_R_body = core::exp_so3(s * turn) * n.ecef_R_body;
-      append(out, n, (1 - s) * a.diagonal() + s * b.diagonal());
     }
+    return states_;
   }
-  return out;
-}
+  /// Counts the records of an interval that nobody wants.
+  void pass(size_t k) {
+    if (thinning_.takes_all()) return;
+    Increment piece;
+    ImuWalk walk(problem_.path, problem_.nodes[k].time);
+    while (walk.next(problem_.nodes[k + 1].time, piece)) count_ += at_record(problem_.path, walk) ? 1 : 0;
+  }
+
+ private:
+  const Problem& problem_;
+  const Thinning& thinning_;
+  std::uint64_t count_;
+  std::vector<NavState> states_;
+};
 
 void append(core::TrajectoryData& out, const core::TrajectoryData& part) {
   using Data = core::TrajectoryData;
@@ -103,29 +135,57 @@ void append(core::TrajectoryData& out, const core::TrajectoryData& part) {
 }  // namespace
 
 core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, double rate) {
-  const ImuPath& path = problem.path;
   const std::vector<Node>& nodes = problem.nodes;
   core::TrajectoryData out;
   for (size_t k = 0; k < nodes.size(); ++k) {
     out.covariance.time.push_back(nodes[k].time);
     out.covariance.upper.push_back(smoothed[k].covariance);
   }
-  const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
-  const auto every = static_cast<std::uint64_t>(std::max(1.0, std::round(1.0 / (rate * step))));
-  const size_t intervals = nodes.empty() ? 0 : nodes.size() - 1, parts = (intervals + intervals_of_a_part - 1) / intervals_of_a_part;
-  std::vector<std::uint64_t> before(parts + 1, 0);  // records before each part
-  if (every > 1) {
-    core::in_parallel(intervals, intervals_of_a_part,
-                      [&](size_t first, size_t last) { before[first / intervals_of_a_part + 1] = records_between(problem, first, last); });
-    for (size_t p = 0; p < parts; ++p) before[p + 1] += before[p];
-  }
-  std::vector<core::TrajectoryData> made(parts);
-  core::in_parallel(intervals, intervals_of_a_part, [&](size_t first, size_t last) {
-    const size_t p = first / intervals_of_a_part;
-    made[p] = part_of(problem, smoothed, first, last, before[p], every);
+  if (nodes.size() < 2) return out;
+  const Thinning thinning(problem, rate);
+  std::vector<core::TrajectoryData> made(thinning.parts());
+  core::in_parallel(nodes.size() - 1, intervals_of_a_part, [&](size_t first, size_t last) {
+    const size_t part = first / intervals_of_a_part;
+    Between between(problem, thinning, part);
+    for (size_t k = first; k < last; ++k) {
+      const Covariance a = core::CovarianceSeries::unpack(smoothed[k].covariance),
+                       b = core::CovarianceSeries::unpack(smoothed[k + 1].covariance);
+      for (const NavState& n : between.states(k, smoothed[k].estimate, smoothed[k + 1].estimate.nav)) {
+        const double s = (n.time - nodes[k].time) / (nodes[k + 1].time - nodes[k].time);
+        append(made[part], n, (1 - s) * a.diagonal() + s * b.diagonal());
+      }
+    }
   });
   for (core::TrajectoryData& part : made) {
     append(out, part);
+    part = {};
+  }
+  return out;
+}
+
+PoseRecords poses_of(const Problem& problem, const std::vector<Estimate>& estimates, double rate, const std::vector<char>& wanted) {
+  PoseRecords out;
+  const Thinning thinning(problem, rate);
+  std::vector<PoseRecords> made(thinning.parts());
+  core::in_parallel(wanted.size(), intervals_of_a_part, [&](size_t first, size_t last) {
+    PoseRecords& mine = made[first / intervals_of_a_part];
+    Between between(problem, thinning, first / intervals_of_a_part);
+    for (size_t k = first; k < last; ++k) {
+      if (!wanted[k]) {
+        between.pass(k);
+        continue;
+      }
+      for (const NavState& n : between.states(k, estimates[k], estimates[k + 1].nav)) {
+        mine.time.push_back(n.time);
+        mine.position.push_back(n.position);
+        mine.ecef_R_body.push_back(n.ecef_R_body);
+      }
+    }
+  });
+  for (PoseRecords& part : made) {
+    out.time.insert(out.time.end(), part.time.begin(), part.time.end());
+    out.position.insert(out.position.end(), part.position.begin(), part.position.end());
+    out.ecef_R_body.insert(out.ecef_R_body.end(), part.ecef_R_body.begin(), part.ecef_R_body.end());
     part = {};
   }
   return out;

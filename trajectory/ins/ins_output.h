@@ -3,6 +3,7 @@
 
 #include "core/records/trajectory_data.h"
 #include "trajectory/ins/ins_smoother.h"
+#include "trajectory/trajectory.h"
 
 namespace swath::trajectory {
 
@@ -11,5 +12,8 @@ namespace swath::trajectory {
 /// ends at the velocity's), so that nothing jumps. Bridged stretches of the IMU get no records. At most `rate` records per second.
 /// Sigmas and covariances are linear in time between nodes.
 core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, double rate);
+
+/// The same without sigmas, of the intervals between nodes that are `wanted` (one entry per interval): poses for a linearisation.
+PoseRecords poses_of(const Problem& problem, const std::vector<Estimate>& estimates, double rate, const std::vector<char>& wanted);
 
 }  // namespace swath::trajectory
