@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index tile_rows = 8, tile_columns = 4;              // of C, kept in registers
-constexpr Index block_depth = 256, block_rows = 96;           // packed at a time: within the processor's second cache
+constexpr Index tile_rows = 8, tile_columns = 4;     // of C, kept in registers
+constexpr Index block_depth = 256, block_rows = 96;  // packed at a time: within the processor's second cache
 
 /// out = a b: `depth` columns of tile_rows, rows of tile_columns.
 using TileProduct = void (*)(Index depth, const double* a, const double* b, double* out);

@@ -50,7 +50,8 @@ class PlaneFactors {
   /// Fits the planes to the returns as they lie, without groups that have lost their weight, and takes from their roughness what is not
   /// noise. Before the first linearisation.
   void fit(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);
-  /// Which intervals between instants a trajectory needs for linearise(): those of the returns, `margin` (s) before and after them included.
+  /// Which intervals between instants a trajectory needs for linearise(): those of the returns, `margin` (s) before and after them
+  /// included.
   std::vector<char> intervals(const core::Calibration& calibration, double margin) const;
   /// All returns at a trajectory, which passes through the states, and a calibration.
   void linearise(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);

@@ -33,8 +33,7 @@ struct Known {
     NetworkNormals normals(flight.states->sizes());
     planes.add(*flight.states, normals);
     // A millionth of what the planes could say.
-    for (int k = 0; k <= flight.states->common(); ++k)
-      normals.N.add(k, k, 1e18 * MatrixXd::Identity(normals.N.size(k), normals.N.size(k)));
+    for (int k = 0; k <= flight.states->common(); ++k) normals.N.add(k, k, 1e18 * MatrixXd::Identity(normals.N.size(k), normals.N.size(k)));
     NodeFactor factor(normals.N);
     const VectorXd x = factor.solve(normals.b);
     planes.follow(x, *flight.states);
