@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/geo/ellipsoid_normal.h"
 #include "core/geo/frames.h"
-#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 namespace {
@@ -28,8 +28,7 @@ Matrix3d angles_by_psi(const Matrix3d& ecef_R_ned, const core::Attitude& a) {
 
 FilterNode filter_node(const InsFilter& f) {
   const NavState nav = f.estimate().nav;
-  const core::Geodetic g = core::geodetic_of(nav.position);
-  const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
+  const Matrix3d ned = core::ellipsoid_normal(nav.position).ecef_R_ned();
   const core::Attitude a = core::attitude_of(ned.transpose() * nav.ecef_R_body);
   const Matrix3d by_psi = angles_by_psi(ned, a);
   FilterNode out;
@@ -164,8 +163,7 @@ class LinkCollector {
 }  // namespace
 
 Matrix9 local_by_ecef(const NavState& nav) {
-  const core::Geodetic g = core::geodetic_of(nav.position);
-  const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
+  const Matrix3d ned = core::ellipsoid_normal(nav.position).ecef_R_ned();
   Matrix9 turn = Matrix9::Zero();
   turn.block<3, 3>(0, 0) = turn.block<3, 3>(3, 3) = ned.transpose();
   turn.block<3, 3>(6, 6) = angles_by_psi(ned, core::attitude_of(ned.transpose() * nav.ecef_R_body));

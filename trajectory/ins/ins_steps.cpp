@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geo/geodesy.h"
+#include "core/geo/ellipsoid_normal.h"
 
 namespace swath::trajectory {
 namespace {
@@ -19,10 +19,7 @@ constexpr double rate_span = 0.03;         // s at a node over which the body's 
 
 }  // namespace
 
-Matrix3d ned_at(const Vector3d& ecef) {
-  const core::Geodetic g = core::geodetic_of(ecef);
-  return core::ecef_R_ned(g.latitude, g.longitude);
-}
+Matrix3d ned_at(const Vector3d& ecef) { return core::ellipsoid_normal(ecef).ecef_R_ned(); }
 
 StateMatrix Passage::noise() const {
   StateMatrix out = transition * (0.5 * gained).asDiagonal() * transition.transpose();

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geo/ellipsoid_normal.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 
@@ -24,10 +25,8 @@ Increment increment_of(const core::ImuData& imu, size_t k) {
 }
 
 Vector3d gravity_at(const Vector3d& ecef) {
-  const core::Geodetic g = core::geodetic_of(ecef);
-  const double c = std::cos(g.latitude);
-  const Vector3d up(c * std::cos(g.longitude), c * std::sin(g.longitude), std::sin(g.latitude));
-  return -core::normal_gravity(g.latitude, g.height) * up;
+  const core::EllipsoidNormal n = core::ellipsoid_normal(ecef);
+  return -n.gravity() * n.up();
 }
 
 Matrix3d gravity_gradient_at(const Vector3d& ecef) {

@@ -5,8 +5,10 @@
 
 #include <Eigen/LU>
 #include <cmath>
+
 #include <numbers>
 #include <vector>
+#include "core/geo/ellipsoid_normal.h"
 
 namespace swath::core {
 namespace {
@@ -83,6 +85,24 @@ TEST(Geodesy, LocalLevelAxesAreTheSlopesOfThePosition) {
   EXPECT_LT((slope(h, 0, 0) / (2 * h * (meridian_radius(g.latitude) + g.height)) - R.col(0)).norm(), cut);
   EXPECT_LT((slope(0, h, 0) / (2 * h * (prime_vertical_radius(g.latitude) + g.height) * std::cos(g.latitude)) - R.col(1)).norm(), cut);
   EXPECT_LT((slope(0, 0, -10.0) / 20.0 - R.col(2)).norm(), cut);
+}
+
+TEST(Geodesy, TheNormalWithoutAnglesIsThatOfTheAngles) {
+  for (const double latitude : {-pi / 2, -0.9, -1e-9, 0.0, 0.3, 1.2, pi / 2})
+    for (const double longitude : {-3.1, -1.0, 0.0, 0.7, 3.14})
+      for (const double height : {-100.0, 0.0, 3000.0, 20000.0}) {
+        const Eigen::Vector3d place = ecef_of({latitude, longitude, height});
+        const Geodetic g = geodetic_of(place);
+        const EllipsoidNormal n = ellipsoid_normal(place);
+        EXPECT_LT((n.ecef_R_ned() - ecef_R_ned(g.latitude, g.longitude)).norm(), 1e-15);
+        EXPECT_LT((n.up() + n.ecef_R_ned().col(2)).norm(), 1e-16);
+        EXPECT_EQ(n.height, g.height);
+        EXPECT_NEAR(n.gravity(), normal_gravity(g.latitude, g.height), 1e-14);
+      }
+  const EllipsoidNormal pole = ellipsoid_normal({0.0, 0.0, wgs84::b + 5.0});
+  EXPECT_EQ(pole.cos_longitude, 1.0);
+  EXPECT_NEAR(pole.sin_latitude, 1.0, 1e-15);
+  EXPECT_NEAR(pole.height, 5.0, 1e-8);
 }
 
 TEST(Geodesy, RadiiAtEquatorAndPole) {
