@@ -59,18 +59,32 @@ TileProduct tile_product() {
 
 Index tiles(Index n, Index of) { return (n + of - 1) / of; }
 
-/// `count` rows from `first` on and `depth` columns from `from` on, as tiles of `width` rows, column after column; zeros beyond the last.
-void pack(const MatrixView& m, Index first, Index count, Index from, Index depth, Index width, std::vector<double>& out) {
-  out.resize(static_cast<size_t>(tiles(count, width) * width * depth));
+/// `count` rows from `first` on and `depth` columns from `from` on, as tiles of `Width` rows, column after column; zeros beyond the last.
+template <Index Width>
+void pack(const MatrixView& m, Index first, Index count, Index from, Index depth, std::vector<double>& out) {
+  out.resize(static_cast<size_t>(tiles(count, Width) * Width * depth));
   double* to = out.data();
-  for (Index i = 0; i < count; i += width) {
-    const Index there = std::min(width, count - i);
-    const double* row = m.data + (first + i) * m.row_step + from * m.column_step;
-    for (Index k = 0; k < depth; ++k, to += width) {
-      const double* at = row + k * m.column_step;
-      for (Index r = 0; r < there; ++r) to[r] = at[r * m.row_step];
-      std::fill(to + there, to + width, 0.0);
+  for (Index i = 0; i < count; i += Width) {
+    const Index there = std::min(Width, count - i);
+    const double* at = m.data + (first + i) * m.row_step + from * m.column_step;
+    if (there == Width && m.row_step == 1) {
+      for (Index k = 0; k < depth; ++k, to += Width, at += m.column_step) std::copy_n(at, Width, to);
+      continue;
     }
+    for (Index k = 0; k < depth; ++k, to += Width, at += m.column_step) {
+      for (Index r = 0; r < there; ++r) to[r] = at[r * m.row_step];
+      std::fill(to + there, to + Width, 0.0);
+    }
+  }
+}
+
+/// C -= a tile, of which C holds `rows` and `columns`.
+void subtract_tile(const double* tile, Index rows, Index columns, double* C, Index step) {
+  for (Index j = 0; j < columns; ++j, C += step, tile += tile_rows) {
+    if (rows == tile_rows)
+      for (Index i = 0; i < tile_rows; ++i) C[i] -= tile[i];
+    else
+      for (Index i = 0; i < rows; ++i) C[i] -= tile[i];
   }
 }
 
@@ -83,18 +97,14 @@ void subtract_product(Eigen::Ref<Eigen::MatrixXd> C, const MatrixView& A, const 
   double tile[tile_rows * tile_columns];
   for (Index from = 0; from < A.columns; from += block_depth) {
     const Index depth = std::min(block_depth, A.columns - from);
-    pack(columns, 0, B.columns, from, depth, tile_columns, packed_b);
+    pack<tile_columns>(columns, 0, B.columns, from, depth, packed_b);
     for (Index first = 0; first < A.rows; first += block_rows) {
       const Index rows = std::min(block_rows, A.rows - first);
-      pack(A, first, rows, from, depth, tile_rows, packed_a);
+      pack<tile_rows>(A, first, rows, from, depth, packed_a);
       for (Index j = 0; j < B.columns; j += tile_columns)
         for (Index i = 0; i < rows; i += tile_rows) {
           product(depth, packed_a.data() + i * depth, packed_b.data() + j * depth, tile);
-          const Index high = std::min(tile_rows, rows - i), wide = std::min(tile_columns, B.columns - j);
-          for (Index c = 0; c < wide; ++c) {
-            double* to = &C(first + i, j + c);
-            for (Index r = 0; r < high; ++r) to[r] -= tile[c * tile_rows + r];
-          }
+          subtract_tile(tile, std::min(tile_rows, rows - i), std::min(tile_columns, B.columns - j), &C(first + i, j), C.outerStride());
         }
     }
   }

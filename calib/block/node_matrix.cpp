@@ -298,9 +298,13 @@ void NodeFactor::invert(Keep keep) {
       if (--waiting[parent] == 0) whole[parent].resize(0, 0);
     }
     const auto L11 = L.topRows(f.own).triangularView<Eigen::Lower>();
-    MatrixXd K = L.bottomRows(f.rows);
-    L11.solveInPlace<Eigen::OnTheRight>(K);
     const MatrixXd inverse = L11.solve(MatrixXd::Identity(f.own, f.own));
+    MatrixXd K = MatrixXd::Zero(f.rows, f.own);  // L21 by it
+    by_columns(f.own, static_cast<double>(f.rows) * f.own * f.own, alone, [&](Index j, Index end) {
+      auto to = K.middleCols(j, end - j);
+      subtract_product(to, MatrixView::of(L.bottomRows(f.rows)), MatrixView::of(inverse.middleCols(j, end - j)));
+      to = -to;
+    });
     if (keep == Keep::inverse_alone) L.resize(0, 0);
     Z.setZero(f.own + f.rows, f.own);
     auto Z21 = Z.bottomRows(f.rows);
