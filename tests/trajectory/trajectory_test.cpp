@@ -180,6 +180,26 @@ TEST(Trajectory, SigmaIsLinearBetweenRecords) {
   EXPECT_NEAR(t.sigma_at(start + 0.0025).heading, 1.5e-4, 1e-7);
 }
 
+TEST(Trajectory, ThroughPosesItIsThatOfTheAngles) {
+  const core::TrajectoryData d = sampled(Flight{}, 2.0, 200.0);
+  PoseRecords poses;
+  for (size_t i = 0; i < d.size(); ++i) {
+    if (i > 100 && i < 200) continue;
+    poses.time.push_back(d.time[i]);
+    poses.position.push_back(core::ecef_of({d.latitude[i], d.longitude[i], d.height[i]}));
+    poses.ecef_R_body.push_back(core::ecef_R_ned(d.latitude[i], d.longitude[i]) * core::matrix_of({d.roll[i], d.pitch[i], d.heading[i]}));
+  }
+  const Trajectory angles(d), through(poses);
+  EXPECT_EQ(through.spans().size(), 2u) << "what was left out is a gap";
+  EXPECT_FALSE(through.has_sigma());
+  const double inside = d.time[50] + 0.001, gap = d.time[150];
+  EXPECT_FALSE(through.covers(gap));
+  EXPECT_EQ(through.pose_at(inside)->position, angles.pose_at(inside)->position);
+  EXPECT_EQ(through.pose_at(inside)->ecef_R_body, angles.pose_at(inside)->ecef_R_body);
+  std::swap(poses.time[3], poses.time[4]);
+  EXPECT_THROW(Trajectory{poses}, core::Error);
+}
+
 void expect_error(core::TrajectoryData d, const std::string& where, const std::string& what) {
   try {
     Trajectory t(std::move(d), {}, "a.sbet");

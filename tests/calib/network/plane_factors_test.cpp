@@ -122,6 +122,32 @@ TEST(PlaneFactors, ARejectedGroupTakesNoPartInTheFit) {
   EXPECT_GT(others, 0u);
 }
 
+/// A trajectory without the other intervals gives the same equations.
+TEST(PlaneFactors, IntervalsAreThoseOfTheReturns) {
+  const Crossing c;
+  PlaneFactors whole = c.factors(), part = c.factors();
+  const std::vector<char> wanted = whole.intervals(c.calibration, 0.25);
+  ASSERT_EQ(wanted.size(), c.times.size() - 1);
+  EXPECT_LT(std::count(wanted.begin(), wanted.end(), 1), static_cast<std::ptrdiff_t>(wanted.size()));
+  const core::TrajectoryData& all = c.off->data();
+  trajectory::PoseRecords poses;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto next = std::upper_bound(c.times.begin(), c.times.end(), all.time[i]) - c.times.begin();
+    if (!wanted[static_cast<size_t>(std::clamp<std::ptrdiff_t>(next - 1, 0, static_cast<std::ptrdiff_t>(wanted.size()) - 1))]) continue;
+    const auto pose = c.off->pose_at(all.time[i]);
+    poses.time.push_back(all.time[i]);
+    poses.position.push_back(pose->position);
+    poses.ecef_R_body.push_back(pose->ecef_R_body);
+  }
+  ASSERT_LT(poses.time.size(), all.size());
+  whole.linearise(*c.off, c.calibration);
+  part.linearise(trajectory::Trajectory(poses), c.calibration);
+  for (size_t g = 0; g < whole.groups(); ++g) {
+    EXPECT_EQ(part.block(g).used, whole.block(g).used);
+    EXPECT_NEAR(part.block(g).c, whole.block(g).c, 1e-6 * whole.block(g).c);
+  }
+}
+
 /// A solution moves the planes that were eliminated: with everything else held, to where the returns are.
 TEST(PlaneFactors, PlanesFollowTheSolution) {
   Crossing c(0.0);

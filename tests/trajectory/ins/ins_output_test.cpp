@@ -130,6 +130,34 @@ TEST(InsOutput, RateDecimates) {
   EXPECT_EQ(trajectory_of(*made.problem, nodes, 2000.0).size(), all.size());
 }
 
+/// What a linearisation takes is the same trajectory, where it is wanted.
+TEST(InsOutput, PosesOfSomeIntervalsAreThoseOfTheTrajectory) {
+  const InsProblem made(test::motion_of(test::survey_flight(2)), exact_setup());
+  const std::vector<SmoothedNode> nodes = nodes_of(made);
+  std::vector<Estimate> estimates;
+  for (const SmoothedNode& n : nodes) estimates.push_back(n.estimate);
+  for (const double rate : {200.0, 50.0}) {
+    const core::TrajectoryData all = trajectory_of(*made.problem, nodes, rate);
+    std::vector<char> wanted(nodes.size() - 1, 0);
+    for (size_t k = 0; k < wanted.size(); ++k) wanted[k] = k % 7 < 3;
+    const PoseRecords some = poses_of(*made.problem, estimates, rate, wanted);
+    size_t i = 0;
+    for (size_t k = 0; k < all.size(); ++k) {
+      // The record at a node ends the interval before it.
+      const auto next = std::lower_bound(made.nodes.begin() + 1, made.nodes.end() - 1, all.time[k] - 1e-6,
+                                         [](const Node& n, double t) { return n.time < t; });
+      if (!wanted[static_cast<size_t>(next - made.nodes.begin()) - 1]) continue;
+      ASSERT_LT(i, some.time.size());
+      EXPECT_EQ(some.time[i], all.time[k]);
+      EXPECT_LT((some.position[i] - position(all, k)).norm(), 1e-8);
+      EXPECT_LT((some.ecef_R_body[i] - attitude(all, k)).norm(), 1e-12);
+      ++i;
+    }
+    EXPECT_EQ(i, some.time.size());
+    EXPECT_GT(i, all.size() / 3);
+  }
+}
+
 TEST(InsOutput, BridgedStretchesHaveNoRecords) {
   InsProblem::Setup setup = exact_setup();
   setup.change_imu = [](core::ImuData imu) {
