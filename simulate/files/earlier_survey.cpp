@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "core/error.h"
+
 namespace swath::simulate {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr std::array<std::string_view, 22> records{
     "smrmsg.out",        "trajectory.csv",  "imu.csv",     "gnss.csv",         "events_pc.csv", "events_marks.csv",
     "loopstats",         "pps.log",         "control.csv", "check.csv",        "images.csv",    "image_points.csv",
     "block_control.csv", "block_check.csv", "block.toml",  "camera_points.csv"};
+constexpr size_t files_named = 5;
 constexpr std::array<std::string_view, 4> of_formats{".csv", ".npy", ".las", ".laz"};
 
 /// A name that simulations write: one of the records, survey_FORMAT.toml.
@@ -24,10 +27,27 @@ bool is_own(const std::string& name) {
                      [&](std::string_view format) { return name == "survey_" + std::string(format.substr(1)) + ".toml"; });
 }
 
+/// A simulation that was killed has its folder truth/, too, and is made again by the same command.
+void refuse_other_records(const fs::path& folder) {
+  std::error_code ec;
+  if (fs::is_directory(folder / "truth", ec)) return;
+  std::vector<std::string> found;
+  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
+    if (const std::string name = at->path().filename().string(); is_own(name)) found.push_back(name);
+  if (found.empty()) return;
+  std::sort(found.begin(), found.end());
+  std::string names;
+  for (size_t k = 0; k < std::min(found.size(), files_named); ++k) names += (k > 0 ? ", " : "") + found[k];
+  if (found.size() > files_named) names += " and " + std::to_string(found.size() - files_named) + " more";
+  throw core::usage_error("the folder holds " + names + ", which no simulation wrote: they would be overwritten", folder.string(),
+                          "name a folder that does not exist yet, or move these files");
+}
+
 }  // namespace
 
 EarlierSurvey::EarlierSurvey(const fs::path& folder) : folder_(folder) {
   std::error_code ec;
+  refuse_other_records(folder);
   if (!fs::is_regular_file(folder / "truth" / "simulation.json", ec)) return;
   for (const fs::path& inside : {fs::path(), fs::path("truth")})
     for (fs::directory_iterator at(folder / inside, ec), end; !ec && at != end; at.increment(ec)) {

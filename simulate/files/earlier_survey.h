@@ -11,7 +11,8 @@ namespace swath::simulate {
 
 class EarlierSurvey {
  public:
-  /// Looks, before the new simulation, for files under the names that simulations write. Nothing where no simulation was made there.
+  /// Looks, before the new simulation, for files under the names that simulations write. Throws core::Error (usage) where they are not of a
+  /// simulation, which has a folder truth/: records of a real survey would be overwritten.
   explicit EarlierSurvey(const std::filesystem::path& folder);
   /// Removes, after it, those that it has not written anew; their names in the folder, sorted. Other files stay, and
   /// `inputs` of the new one.

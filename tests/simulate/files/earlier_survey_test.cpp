@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "core/error.h"
 #include "tests/world/support.h"
 
 namespace swath::simulate {
@@ -30,11 +31,31 @@ TEST(EarlierSurvey, WhatIsNotWrittenAnewGoes) {
     EXPECT_TRUE(fs::exists(folder / name)) << name;
 }
 
-TEST(EarlierSurvey, AFolderThatNoSimulationMadeStaysAsItIs) {
+TEST(EarlierSurvey, RecordsThatNoSimulationWroteAreRefused) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(EarlierSurvey(folder / "absent").remove_stale(), Names{});
+  write_old(folder / "flight.las");
+  EXPECT_EQ(EarlierSurvey(folder.path()).remove_stale(), Names{});  // of other names
+  for (const char* name : {"survey.toml", "laser.las", "sbet.out", "imu.csv", "gnss.csv", "smrmsg.out"}) write_old(folder / name);
+  try {
+    EarlierSurvey{folder.path()};
+    FAIL() << "records of another survey would be overwritten";
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
+    EXPECT_EQ(std::string(e.what()),
+              "the folder holds gnss.csv, imu.csv, laser.las, sbet.out, smrmsg.out and 1 more, which no simulation wrote: they would be "
+              "overwritten");
+    EXPECT_EQ(e.where(), folder.path().string());
+  }
+  EXPECT_TRUE(fs::exists(folder / "laser.las"));
+}
+
+// A simulation that was killed has not come to its list of options, but has made the folder of the truth.
+TEST(EarlierSurvey, AnUnfinishedSimulationIsMadeAgain) {
   const test::TemporaryFolder folder;
   write_old(folder / "laser.las");
+  fs::create_directories(folder / "truth");
   EXPECT_EQ(EarlierSurvey(folder.path()).remove_stale(), Names{});
-  EXPECT_EQ(EarlierSurvey(folder / "absent").remove_stale(), Names{});
   EXPECT_TRUE(fs::exists(folder / "laser.las"));
 }
 
