@@ -11,8 +11,8 @@
 #include "core/parallel.h"
 #include "core/printable.h"
 #include "io/text/value_file.h"
-#include "pipeline/jobs/config_folder.h"
 #include "pipeline/provenance.h"
+#include "tools/usage_fault.h"
 
 namespace swath::tools {
 namespace {
@@ -28,21 +28,6 @@ class HelpText : public CLI::Formatter {
     return out.str();
   }
 };
-
-/// A fault of the command line in the form of every other error.
-core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
-  std::vector<std::string> names;
-  for (const CLI::App* c : app.get_subcommands({})) names.push_back(c->get_name());
-  const std::string first = argc > 1 ? argv[1] : "";
-  const bool known = std::find(names.begin(), names.end(), first) != names.end();
-  if (known || first.empty() || first[0] == '-')
-    return core::usage_error(e.what(), known ? "swath " + first : "swath", known ? "see swath " + first + " --help" : "see swath --help");
-  if (pipeline::config_names().empty())  // as where the program's file alone was copied
-    return core::usage_error("'" + first + "' is not a command, or one that needs the configs of the program, which are not found", "swath",
-                             "they are in share/swath/configs beside the folder of the program; SWATH_CONFIGS names another folder");
-  const std::string near = core::nearest(first, names);
-  return core::usage_error("'" + first + "' is no command", "swath", near.empty() ? "see swath --help" : "did you mean '" + near + "'?");
-}
 
 constexpr const char* overview =
     "Examples\n"
@@ -70,13 +55,24 @@ CLI::App* Commands::add(const std::string& name, const std::string& help, std::f
 }
 
 int Commands::call(int argc, char** argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   typed_ = "swath";
-  for (int i = 1; i < argc; ++i) typed_ += std::string(" ") + argv[i];
+  for (const std::string& word : words) typed_ += " " + word;
+  try {
+    return parse_and_call(argc, argv, words);
+  } catch (const core::Error& e) {
+    const std::string hint = e.code() == core::Exit::bad_usage ? split_quantity_hint(words) : "";
+    if (hint.empty()) throw;
+    throw core::Error(e.what(), e.where(), hint, e.code());
+  }
+}
+
+int Commands::parse_and_call(int argc, char** argv, const std::vector<std::string>& words) {
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app_.exit(e);
-    throw usage_fault(app_, e, argc, argv);
+    throw usage_fault(app_, e, words);
   }
   const CLI::App* given = app_.get_subcommands().front();
   for (const auto& [command, function] : calls_)

@@ -35,6 +35,8 @@ class Commands {
   Commands& operator=(const Commands&) = delete;
 
  private:
+  int parse_and_call(int argc, char** argv, const std::vector<std::string>& words);
+
   CLI::App app_;
   std::string typed_;
   std::vector<std::pair<CLI::App*, std::function<int()>>> calls_;

@@ -51,6 +51,48 @@ class Help(Case):
                 self.assert_error(swath(*arguments, cwd=self.folder), 2, re.escape(word))
         self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_a_survey_without_its_option_is_named(self):
+        for command in ("run", "check", "explain", "tasks"):
+            self.assert_error(swath(command, "survey", "lech/survey.toml"), 2, f"name the survey by its option: swath {command} survey --survey lech/survey.toml")
+        self.assert_error(swath("run", CONFIG, "lech/laser.npy"), 2, "'lech/laser.npy' has no place after the config", "records are named in a survey.toml")
+        self.assert_error(swath("run", CONFIG, "flight.laz"), 2, "point clouds are given to `swath dtm`")
+        self.assert_error(swath("run", CONFIG, "--survey", "a.toml", "b.toml"), 2, "'b.toml' has no place", "given by --survey")
+
+    def test_a_unit_that_is_a_word_of_its_own_is_named(self):
+        (self.folder / "a.laz").touch()
+        for arguments, write in ((["dtm", "a.laz", "--cell", "1", "m"], "write --cell 1m or --cell \"1 m\""),
+                                 (["dtm", "--contours", "2.5", "ft", "a.laz"], "write --contours 2.5ft"),
+                                 (["check", CONFIG, "--set", "dtm.cell=50", "cm"], "write --set dtm.cell=50cm or --set \"dtm.cell=50 cm\""),
+                                 (["simulate", "x", "--set", "flight.height=250", "m"], "--set flight.height=250m")):
+            with self.subTest(arguments=arguments):
+                self.assert_error(swath(*arguments, cwd=self.folder), 2, re.escape(write))
+        (self.folder / "m").mkdir()
+        self.assertNotIn("word of its own", swath("dtm", "a.laz", "--cell", "1", "m", cwd=self.folder).stderr)
+
+    def test_words_of_other_programs_lead_to_a_command(self):
+        for word, hint in (("contours", "swath dtm CLOUD --contours 1m"), ("convert", "swath copc CLOUD"), ("ground", "swath classify"),
+                           ("survey", "it is a config: swath run survey"), ("netwrok", "did you mean the config 'network'"),
+                           ("stage", "did you mean 'stages'"), ("zzzz", "see swath --help")):
+            self.assert_error(swath(word), 2, f"'{word}' is not a command", re.escape(hint))
+
+    def test_hints_name_commands_and_configs_that_are_there(self):
+        source = (SOURCE / "tools" / "usage_fault.cpp").read_text()
+        commands = set(re.findall(r"(?m)^  ([a-z][a-z-]+) ", swath("--help").stdout.split("Subcommands:")[1]))
+        configs = {c.stem for c in CONFIGS}
+        for hint in re.findall(r'"(`swath [^"]*)"}', source):
+            for command, word in re.findall(r"`swath ([a-z]+) ?([a-z]*)", hint):
+                self.assertIn(command, commands, hint)
+                if command == "run" and word:
+                    self.assertIn(word, configs, hint)
+
+    def test_records_that_no_simulation_wrote_stay(self):
+        real = self.folder / "real"
+        real.mkdir()
+        (real / "survey.toml").write_text('name = "Lech"\n')
+        self.assert_error(swath("simulate", real, *(w for s in SMALLEST for w in ("--set", s))), 2, "the folder holds survey.toml, which no simulation wrote", "hint: ")
+        self.assertEqual([p.name for p in real.iterdir()], ["survey.toml"])
+        self.assertEqual((real / "survey.toml").read_text(), 'name = "Lech"\n')
+
     def test_bad_data_is_code_1(self):
         (self.folder / "a.las").write_bytes(b"no such thing")
         self.assert_error(swath("info", self.folder / "a.las"), 1, "a.las", "hint: ")
