@@ -15,6 +15,7 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/time.h"
+#include "io/copc/copc_hierarchy.h"
 #include "io/las/las_reader.h"
 #include "io/survey/file_facts.h"
 
@@ -110,12 +111,26 @@ void describe(const LasTimes& r, V& v) {
   v.result("steps_back", r.steps_back, core::if_any(), "Points whose time is before that of the point before.");
 }
 
+/// The octree of a LAZ that is COPC.
+struct CopcFacts {
+  size_t nodes = 0;
+  int levels = 0;
+  double spacing = 0.0;
+};
+template <class V>
+void describe(const CopcFacts& r, V& v) {
+  v.result("nodes", r.nodes, "Nodes of the octree that hold points.");
+  v.result("levels", r.levels, "Levels of the octree.");
+  v.result("spacing", r.spacing, "Distance between points of the root, in units of the coordinates.");
+}
+
 struct LasFacts {
   const LasHeader& h;
   const Sums& s;
   StatedCrs crs;
   std::optional<LasTimes> time;
   std::vector<std::string> warnings;
+  std::optional<CopcFacts> copc{};
 };
 template <class V>
 void describe(const LasFacts& r, V& v) {
@@ -124,7 +139,7 @@ void describe(const LasFacts& r, V& v) {
   const double area = r.s.points > 0 ? covered_area(r.s) : 0.0;
   std::vector<std::string> extras;
   for (const LasExtra& e : h.extras) extras.push_back(e.name);
-  v.result("format", std::string(h.compressed ? "LAZ" : "LAS"), "Format.");
+  v.result("format", std::string(r.copc ? "COPC (LAZ)" : h.compressed ? "LAZ" : "LAS"), "Format.");
   v.result("version", std::to_string(h.version_major) + "." + std::to_string(h.version_minor), "Version of LAS.");
   v.result("point_format", h.point_format, "Point format.");
   v.result("points", r.s.points, "Points.");
@@ -138,6 +153,7 @@ void describe(const LasFacts& r, V& v) {
   v.result("y", r.s.xyz[1], "Smallest and largest y.");
   v.result("z", r.s.xyz[2], "Smallest and largest z.");
   v.table("time", r.time, "GPS times of the points.");
+  v.table("copc", r.copc, "Octree of a COPC file.");
   v.tables_if(r.s.points > 0, "returns", core::counts_of(r.s.by_return), "Points by their return number.");
   v.tables_if(r.s.points > 0, "returns_per_pulse", core::counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
   v.tables_if(r.s.points > 0, "classes", core::counts_of(r.s.classes), "Points by their ASPRS class.");
@@ -228,6 +244,19 @@ void judge_returns(LasFacts& out) {
   if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low, 6));
 }
 
+/// Readers that stream find points by the hierarchy alone: where it is broken, the points that a plain reader sees are not all there.
+void find_octree(const std::filesystem::path& file, LasFacts& out) {
+  try {
+    const auto info = copc_info(out.h, file);
+    if (!info) return;
+    CopcFacts& copc = out.copc.emplace(CopcFacts{0, 0, info->spacing});
+    for (const CopcNode& n : read_copc_nodes(file, out.h, *info)) ++copc.nodes, copc.levels = std::max(copc.levels, n.key.level + 1);
+  } catch (const core::Error& e) {
+    out.copc.reset();
+    out.warnings.push_back("it is a COPC file, but " + std::string(e.what()) + " (" + e.where() + ")");
+  }
+}
+
 }  // namespace
 
 core::Value describe_las(const std::filesystem::path& file) {
@@ -237,6 +266,7 @@ core::Value describe_las(const std::filesystem::path& file) {
   while (reader.read(points, batch) > 0) s.add(points);
   LasFacts out{reader.header(), s, {}, {}, reader.warnings()};
   find_crs(reader, out);
+  find_octree(file, out);
   if (s.points == 0) {
     out.warnings.push_back("the file has no points");
     return core::reported(out);

@@ -2,10 +2,12 @@
 #include "io/las/describe_las.h"
 
 #include <cstring>
+#include <fstream>
 #include <random>
 
 #include "core/error.h"
 #include "io/las/las_writer.h"
+#include "tests/io/copc/copc_sample.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -65,6 +67,29 @@ TEST(DescribeLas, DensityOfSparsePointsCountsNoEmptyCellsAsUncovered) {
     const double stated = describe_las(folder / "a.las").find("points_per_square_unit")->as_number();
     EXPECT_NEAR(stated / density, 1.0, 0.1) << density;
   }
+}
+
+TEST(DescribeLas, CopcIsNamedAndItsHierarchyIsChecked) {
+  const test::TemporaryFolder folder;
+  const LasHeader header = test::sample_header(6);
+  test::write_copc_sample(folder / "a.copc.laz", header, test::copc_points(header, 200000));
+  const core::Value whole = describe_las(folder / "a.copc.laz");
+  EXPECT_EQ(whole.find("format")->as_text(), "COPC (LAZ)");
+  EXPECT_GT(whole.find("copc")->find("nodes")->as_int(), 1);
+  EXPECT_GT(whole.find("copc")->find("levels")->as_int(), 1);
+  EXPECT_FALSE(warns(whole, "COPC"));
+
+  std::vector<std::string> warnings;
+  const LasHeader written = read_las_header(folder / "a.copc.laz", warnings);
+  const CopcInfo info = *copc_info(written, folder / "a.copc.laz");
+  std::fstream(folder / "a.copc.laz", std::ios::in | std::ios::out | std::ios::binary)
+      .seekp(static_cast<std::streamoff>(info.page + 28))
+      .write("\1\0\0\0", 4);  // points of the root
+  const core::Value broken = describe_las(folder / "a.copc.laz");
+  EXPECT_EQ(broken.find("format")->as_text(), "LAZ");
+  EXPECT_EQ(broken.find("copc"), nullptr);
+  EXPECT_TRUE(warns(broken, "it is a COPC file, but the COPC hierarchy is broken: its nodes hold"));
+  EXPECT_EQ(broken.find("points")->as_int(), 200000);
 }
 
 TEST(DescribeLas, APointAloneCoversOneCell) {
