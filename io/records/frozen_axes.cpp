@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 
 #include "core/statistics.h"
 
@@ -21,6 +22,8 @@ constexpr size_t fewest_beside = 100;         // of them on one side, to show it
 constexpr double by_chance = 1e-6;            // probability of such a run in the whole record
 constexpr double mostly = 0.5;                // share of repeats
 constexpr double goes_on = 0.5;               // of another axis' noise beside the run
+constexpr size_t fewest_standing = 1000;      // records, to call an axis one that stands
+constexpr size_t many_values = 20;            // of an axis whose noise its digits resolve: then the other axes' do, too
 constexpr size_t noise_records = 2 * beside;  // records within the run, for that noise
 
 /// The six columns of a record.
@@ -86,7 +89,47 @@ void find_in(const SixAxes& c, size_t axis, std::vector<FrozenAxis>& out) {
   }
 }
 
+/// The longest run of one value.
+FrozenAxis longest_run(const SixAxes& c, size_t axis) {
+  FrozenAxis longest{axis, 0, 0};
+  for (size_t first = 0, last = 0; first < c.size(); first = last) {
+    for (last = first + 1; last < c.size() && c.repeats(axis, last);) ++last;
+    if (last - first > longest.last - longest.first) longest = {axis, first, last};
+  }
+  return longest;
+}
+
+/// Noise in steps that the digits resolve: second differences are no smaller than first ones, as those of smooth motion are, and the values
+/// are many.
+bool is_noisy(const SixAxes& c, size_t axis) {
+  std::vector<double> steps, bends;
+  std::set<double> values;
+  for (size_t k = 0; k + 1 < c.size(); ++k) {
+    steps.push_back(std::abs(c.at(axis, k + 1) - c.at(axis, k)));
+    if (values.size() < many_values) values.insert(c.at(axis, k));
+  }
+  add_noise(c, axis, 0, c.size(), bends);
+  const double bend = core::median(std::move(bends), 0.0);
+  return values.size() == many_values && bend > 0.0 && bend >= core::median(std::move(steps), 0.0);
+}
+
 }  // namespace
+
+std::vector<size_t> standing_axes(const std::vector<Eigen::Vector3d>& gyro, const std::vector<Eigen::Vector3d>& accelerometer) {
+  std::vector<size_t> out;
+  const SixAxes columns(gyro, accelerometer);
+  if (columns.size() < fewest_standing) return out;
+  for (size_t axis = 0; axis < six; ++axis) {
+    const FrozenAxis run = longest_run(columns, axis);
+    if (run.first < fewest_beside && columns.size() - run.last < fewest_beside) out.push_back(axis);
+  }
+  if (out.empty()) return out;
+  const auto any_is_noisy = [&](size_t sensor) {
+    return is_noisy(columns, sensor) || is_noisy(columns, sensor + 1) || is_noisy(columns, sensor + 2);
+  };
+  if (!any_is_noisy(0) || !any_is_noisy(3)) out.clear();
+  return out;
+}
 
 std::vector<FrozenAxis> frozen_axes(const std::vector<Eigen::Vector3d>& gyro, const std::vector<Eigen::Vector3d>& accelerometer) {
   std::vector<FrozenAxis> out;

@@ -18,4 +18,9 @@ struct FrozenAxis {
 /// on either side, and another axis goes on with the noise that it has there: neither coarse digits nor a body at rest are taken for it.
 std::vector<FrozenAxis> frozen_axes(const std::vector<Eigen::Vector3d>& gyro, const std::vector<Eigen::Vector3d>& accelerometer);
 
+/// Axes, numbered as above, that have one value from the first record to the last, but for up to 100 at either end, while gyros and
+/// accelerometers each have an axis that shows noise in many steps of its digits. Neither motion without noise nor a body at rest in coarse
+/// digits is taken for it.
+std::vector<size_t> standing_axes(const std::vector<Eigen::Vector3d>& gyro, const std::vector<Eigen::Vector3d>& accelerometer);
+
 }  // namespace swath::io

@@ -132,15 +132,31 @@ void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<
   erase(raw, numbers, bad);
 }
 
+constexpr std::array<const char*, 6> axis_names{"gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"};
+
+/// A trajectory of such records would be off by far more than its sigmas.
+void refuse_standing(const Raw& raw, const std::string& name) {
+  std::string axes;
+  const std::vector<size_t> standing = standing_axes(raw.gyro, raw.accelerometer);
+  for (const size_t axis : standing) axes += (axes.empty() ? "" : ", ") + std::string(axis_names[axis]);
+  if (standing.empty()) return;
+  const size_t axis = standing.front();
+  const auto& middle = (axis < 3 ? raw.gyro : raw.accelerometer)[raw.time.size() / 2];
+  throw core::Error(axes + (standing.size() == 1 ? " repeats" : " repeat") + " one value throughout the file (" +
+                        core::format_number(middle[static_cast<Eigen::Index>(axis % 3)], 6) + ") while other axes go on",
+                    name,
+                    "the sensor was frozen, or the column is not the axis: compare the columns of [[imu]] with the file, export it again, "
+                    "or take the file out of the survey");
+}
+
 /// Records of a sensor that stopped do not show the motion: without them there is a gap, of which smoothers know.
 void leave_out_frozen(Raw& raw, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
-  constexpr std::array<const char*, 6> names{"gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"};
   std::vector<char> is_bad(raw.time.size(), 0);
   for (const FrozenAxis& f : frozen_axes(raw.gyro, raw.accelerometer)) {
     std::uint64_t others = 0;  // of an axis before this one
     for (size_t k = f.first; k < f.last; ++k) others += is_bad[k] != 0, is_bad[k] = 1;
     tally.count("IMU records in which an axis is frozen while others go on, left out",
-                rows.place_of(numbers[f.first]) + ": " + names[f.axis] + " repeats one value for " +
+                rows.place_of(numbers[f.first]) + ": " + axis_names[f.axis] + " repeats one value for " +
                     core::format_number(std::round((raw.time[f.last - 1] - raw.time[f.first - 1]) * 1e4) / 1e4) + " s",
                 f.last - f.first - others);
   }
@@ -227,6 +243,7 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
                "the times are too coarse for the rate: export them with more digits");
   if (raw.time.empty()) throw core::Error("the file has no IMU records", name);
   leave_out_wild(raw, f, all.numbers, *rows, tally);
+  refuse_standing(raw, name);
   leave_out_frozen(raw, all.numbers, *rows, tally);
   tally.read(records, all.read);
   tally.keep(records, raw.time.size());

@@ -101,5 +101,43 @@ TEST(FrozenAxes, ARecordThatStopsAsAWholeOrIsShortIsNone) {
   EXPECT_TRUE(frozen_axes({}, {}).empty());
 }
 
+TEST(StandingAxes, OneValueThroughoutIsFound) {
+  for (size_t axis = 0; axis < 6; ++axis)
+    for (const double digit : {0.0, 0.1}) {
+      Made made(8000, digit);
+      made.freeze(axis, 1, 8000);
+      EXPECT_TRUE(made.found().empty());  // no record shows how the axis was before
+      EXPECT_EQ(standing_axes(made.gyro, made.accelerometer), std::vector<size_t>{axis}) << digit;
+    }
+  Made two(8000);
+  two.freeze(3, 50, 7950);
+  two.freeze(4, 1, 8000);
+  EXPECT_EQ(standing_axes(two.gyro, two.accelerometer), (std::vector<size_t>{3, 4}));
+}
+
+// Noise below the digits, records without noise, a column of zeros beside another such, a body at rest, a few records.
+TEST(StandingAxes, CoarseDigitsAndMotionWithoutNoiseAreNone) {
+  const auto none = [](const Made& m) { return standing_axes(m.gyro, m.accelerometer).empty(); };
+  for (const double digit : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 40.0}) EXPECT_TRUE(none(Made(20000, digit))) << digit;
+  Made still(20000, 0.0, 0.0);
+  EXPECT_TRUE(none(still));  // gyro_x and accelerometer_y of the plain turns are smooth, the others constant
+  for (size_t k = 0; k < still.gyro.size(); ++k)
+    still.gyro[k] = {std::sin(0.01 * static_cast<double>(k)), 0.0, std::cos(0.01 * static_cast<double>(k))};
+  EXPECT_TRUE(none(still));
+  Made coarse(20000, 4.0);
+  coarse.freeze(1, 1, 20000);
+  EXPECT_TRUE(none(coarse)) << "an axis of so few values may show none of its noise";
+  Made all(8000);
+  for (size_t axis = 0; axis < 6; ++axis) all.freeze(axis, 1, 8000);
+  EXPECT_TRUE(none(all));
+  Made half(8000);  // noise of one sensor alone is that of a simple simulation
+  for (size_t axis = 0; axis < 5; ++axis) half.freeze(axis, 1, 8000);
+  EXPECT_TRUE(none(half));
+  Made few(500);
+  few.freeze(0, 1, 500);
+  EXPECT_TRUE(none(few));
+  EXPECT_TRUE(standing_axes({}, {}).empty());
+}
+
 }  // namespace
 }  // namespace swath::io

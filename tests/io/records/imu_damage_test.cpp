@@ -101,6 +101,23 @@ TEST_F(ImuFiles, RecordsOfAFrozenAxisAreLeftOut) {
   EXPECT_NEAR(imu.time[500] - imu.time[499], 1.01, place);
 }
 
+TEST_F(ImuFiles, AnAxisThatIsFrozenThroughoutIsRefused) {
+  const auto noise = [](int k, double size) { return size * (std::fmod(0.5 + 0.618033988749895 * k * k, 1.0) - 0.5); };
+  const auto row = [&](int k) {
+    std::string out;
+    for (int c = 0; c < 6; ++c)
+      out += (c ? "," : "") + core::format_number(c == 1 ? 0.0123 : (c == 5 ? -g : 0.0) + noise(7 * k + c, c < 3 ? 1e-3 : 0.05));
+    return out;
+  };
+  try {
+    read(made(1500, at_100_hz, row));
+    FAIL() << "a gyro that shows nothing of the motion";
+  } catch (const core::Error& e) {
+    EXPECT_EQ(std::string(e.what()), "gyro_y repeats one value throughout the file (0.0123) while other axes go on");
+    EXPECT_NE(e.hint().find("columns of [[imu]]"), std::string::npos);
+  }
+}
+
 TEST_F(ImuFiles, RecordsOfSeveralFrozenAxesAreCountedOnce) {
   const auto noise = [](int k, double size) { return size * (std::fmod(0.5 + 0.618033988749895 * k * k, 1.0) - 0.5); };
   const auto row = [&](int k) {
