@@ -32,7 +32,7 @@ constexpr double sure = 5.0;                        // sigmas
 void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t, std::vector<GeometryCheck>& out) {
   LocalPoints points(chain.scanner, chain.calibration, t, f.frame);
   PointColumns p;
-  std::vector<double> heights;
+  std::vector<double> heights, flown;
   double down = 0, n = 0;
   for (const PassSample& s : f.sample.profiles) {
     points.run(s.shots, p);
@@ -42,16 +42,19 @@ void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::T
       const auto place = points.place_at(s.shots.time[i]);
       if (!place) continue;
       heights.push_back(core::geodetic_of(f.frame.to_ecef({p.x[i], p.y[i], p.z[i]})).height);
+      flown.push_back(core::geodetic_of(f.frame.to_ecef(place->scanner)).height);
       down += p.z[i] < place->scanner.z();
       n += 1;
     }
   }
   if (n < 100) return;
   const double share = down / n, height = core::median(std::move(heights), 0.0);
+  const bool is_below = core::median(std::move(flown), 0.0) < lowest_land;
   out.push_back({"beams_down", share, share >= least_down, words("only %.0f %% of the returns lie below the aircraft", 100 * share)});
-  out.push_back(
-      {"ground_height", height, height > lowest_land && height < highest_land,
-       words("the ground lies %.0f m above the ellipsoid, where no land is: heights of the trajectory or ranges are wrong", height)});
+  out.push_back({"ground_height", height, height > lowest_land && height < highest_land,
+                 words("the ground lies %.0f m above the ellipsoid, where no land is: %s", height,
+                       is_below ? "the trajectory lies below all land; its heights may count down, or have another unit"
+                                : "heights of the trajectory or ranges are wrong")});
 }
 
 void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& out) {

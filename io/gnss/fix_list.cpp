@@ -23,6 +23,7 @@ using Eigen::Vector3d;
 constexpr double most_not_finite = 0.03, most_back = 0.03;
 constexpr double most_repeated = 0.2;       // receivers repeat a fix now and then
 constexpr double near_ground = 1e5;         // m
+constexpr double lowest_antenna = -480.0;   // m, ellipsoidal: the shore of the Dead Sea is at -415
 constexpr double fastest = 500.0;           // m/s
 constexpr double near_one_another = 100.0;  // m: errors of single positions
 constexpr double gap_steps = 1.5;
@@ -98,9 +99,12 @@ void FixList::leave_out_not_finite() {
     }
     if (fault.empty()) {
       const double height = core::geodetic_of(f.position).height;
-      if (f.position.norm() >= 0.5 * core::wgs84::b && std::abs(height) <= near_ground) return false;
-      fault = "the position is not near the ground: height " + core::format_number(std::round(height)) + " m";
-      hint = "check the columns and their units";
+      const bool on_earth = f.position.norm() >= 0.5 * core::wgs84::b && std::abs(height) <= near_ground;
+      if (on_earth && height >= lowest_antenna) return false;
+      const std::string metres = core::format_number(std::round(height)) + " m";
+      fault = on_earth ? "the position lies below all land: height " + metres : "the position is not near the ground: height " + metres;
+      hint = on_earth ? "heights count up from the ellipsoid: those of this file may count down; correct their sign, or the columns"
+                      : "check the columns and their units";
     }
     ++far;
     tally_.count("GNSS fixes with an impossible position, left out", place(r) + ": " + fault);

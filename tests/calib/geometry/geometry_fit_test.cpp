@@ -69,6 +69,13 @@ TEST(GeometryFit, ReturnsContradictARolledMountAndWrongHeights) {
   Chain far = f.chain;
   far.calibration.range_scale *= 5;
   EXPECT_FALSE(held(check_returns(s, far, t, f.data), "ground_height"));
+  core::TrajectoryData down = f.data;
+  for (double& h : down.height) h = -h;
+  const trajectory::Trajectory below(down);
+  const auto under = check_returns(sample_of(f, below), f.chain, below, down);
+  EXPECT_FALSE(held(under, "ground_height"));
+  EXPECT_TRUE(
+      std::any_of(under.begin(), under.end(), [](const GeometryCheck& c) { return c.text.find("may count down") != std::string::npos; }));
   EXPECT_LT(cost_of(s, f.chain, t, 0.0), 0.1);
   EXPECT_GT(cost_of(s, mirrored, t, 0.05), 0.4);
 }

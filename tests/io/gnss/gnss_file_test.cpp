@@ -109,6 +109,14 @@ TEST_F(GnssFiles, UnitsThatCannotBe) {
   EXPECT_NE(refusal(f).find("not near the ground"), std::string::npos);
 }
 
+// Counted down: -952 m is 450 m above land of 500 m.
+TEST_F(GnssFiles, HeightsOfTheWrongSignAreRefused) {
+  const std::string said = refusal(made("10,48,11,-952\n11,48,11,-953\n", "t,lat,lon,h\n"));
+  EXPECT_NE(said.find("gnss.csv:2: the position lies below all land: height -952 m"), std::string::npos) << said;
+  EXPECT_NE(said.find("may count down"), std::string::npos) << said;
+  EXPECT_EQ(read(made("10,31.5,35.5,-412\n11,31.5,35.5,-412\n", "t,lat,lon,h\n")).size(), 2u);  // the Dead Sea
+}
+
 TEST_F(GnssFiles, DamagedRows) {
   std::string rows;
   for (int i = 0; i < 100; ++i)
