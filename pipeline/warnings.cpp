@@ -11,6 +11,9 @@ const std::vector<WarningKind>& warning_kinds() {
   static const std::vector<WarningKind> kinds{
       {"buildings.none", "No return is of class building (6): terrain.buildings has nothing to work on.",
        "Put filters.classify before it, or have a cloud whose buildings are of class 6; where nothing is built this is right."},
+      {"calib.finding",
+       "An adjustment found what its records do not determine or what contradicts them: a value, a flight line, a spread of corrections.",
+       "The sentence ends with what to do; report.html of the adjustment shows the lines, residuals and sigmas."},
       {"check.cover", "Covers of check points are not known words: these points count as vegetated.",
        "Write open, bare, urban, grass, crops, brush or forest in the table, or name those without vegetation in quality.points.open."},
       {"check.few", "Fewer than three check points could be compared: no accuracy is stated by them.",

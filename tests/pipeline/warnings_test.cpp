@@ -23,6 +23,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.roof", "sentence": "g"}, {"code": "check.cover", "sentence": "i"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64,
               "named": [{"code": "trajectory.clocks", "sentence": "j"}, {"code": "trajectory.fix_step", "sentence": "m"}, {"code": "trajectory.heading", "sentence": "n"}, {"code": "trajectory.lever_arm", "sentence": "k"}, {"code": "trajectory.motion", "sentence": "l"}]}},
+          {"type": "calib.network", "findings": {"findings": ["line 3: the surfaces move the trajectory: look at its fixes"]}},
           {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.contours", "findings": {"lines": 0, "left_out": 41}}, {"type": "terrain.contours", "findings": {"lines": 3, "left_out": 4, "map_class": "none", "model_sigma_m": 0.08, "findings": ["o"]}},
@@ -69,6 +70,16 @@ TEST(Warnings, EventsOfATechniqueAreNamedOnceThoughTwoStagesFindThem) {
   };
   EXPECT_EQ(number("pc"), 1u);
   EXPECT_EQ(number("camera"), 2u);
+}
+
+TEST(Warnings, WhatAnAdjustmentFoundIsNamedEach) {
+  const auto found = warnings_in(io::parse_json(R"({"stages": [{"type": "calib.strips", "findings": {"findings": []}},
+      {"type": "calib.network", "findings": {"findings": ["line 3: a", "line 4: b"]}},
+      {"type": "quality.geometry", "findings": {"findings": ["c"]}}]})",
+                                                "report"));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].code, "calib.finding");
+  EXPECT_EQ(found[1].text, "line 4: b");
 }
 
 TEST(Warnings, AFewContradictingFixesAreNoWarning) {

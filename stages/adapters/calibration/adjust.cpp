@@ -65,7 +65,7 @@ void describe(const AdjustFindings& r, V& v) {
   v.result("tie_returns", r.tie_returns, core::plain().in_summary(), "Returns on these planes.");
   v.result("rounds", r.rounds, "Rounds of the adjustment.");
   v.result("sigma0", r.sigma0, core::plain(3).in_summary().always(), "A posteriori sigma of unit weight.");
-  v.result("findings", r.findings, core::plain().in_summary(), "What the adjustment found, as sentences.");
+  v.result("findings", r.findings, "What the adjustment found, as sentences.");
 }
 
 AdjustFindings found_in(const calib::Calibrated& c) {

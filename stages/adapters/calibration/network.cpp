@@ -146,7 +146,7 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("rms_before_m", r.on_planes.before, m.in_summary(), "RMS difference of two lines on a plane, with the smoother's trajectory.");
   v.result("rms_after_m", r.on_planes.after, m.in_summary(), "The same with the adjusted trajectory.");
   v.named_tables("values", r.values, "Calibration values that were unknowns.");
-  v.result("findings", r.findings, shown, "What the adjustment found, as sentences.");
+  v.result("findings", r.findings, "What the adjustment found, as sentences.");
   v.table("truth", r.truth, "Errors against the truth of a simulated survey.");
 }
 

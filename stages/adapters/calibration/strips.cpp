@@ -91,7 +91,7 @@ void describe(const StripFindings& r, V& v) {
   v.result("sigma0", r.sigma0, core::plain(3).in_summary().always().only_if(r.done), "A posteriori sigma of unit weight.");
   v.table("plane_differences", r.on_planes, "Differences of lines on planes that both have seen.");
   v.table("surface_differences", r.on_surfaces, "Differences of lines on smooth ground.");
-  v.result("findings", r.findings, shown, "What the adjustment found, as sentences.");
+  v.result("findings", r.findings, "What the adjustment found, as sentences.");
 }
 
 using Corrections = Corrected<trajectory::Trajectory, StripFindings>;
