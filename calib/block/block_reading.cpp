@@ -9,6 +9,7 @@
 #include "calib/block/block_start.h"
 #include "calib/block/mark_plane.h"
 #include "calib/block/navigation/navigation_chain.h"
+#include "calib/block/orientation_table.h"
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
@@ -278,9 +279,9 @@ Matrix3d body_attitude(const ReadBlock& read, std::uint32_t image, const std::ar
     enu_R_ned << 0, 1, 0, 1, 0, 0, 0, 0, -1;
     return local_R_enu * enu_R_ned * core::matrix_of({a[0], a[1], a[2]});
   }
-  const auto turn = [](double angle, const Vector3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); };
-  const Matrix3d omega = turn(a[0], Vector3d::UnitX()), phi = turn(a[1], Vector3d::UnitY()), kappa = turn(a[2], Vector3d::UnitZ());
-  const Matrix3d enu_R_camera = kind == ImageAngles::omega_phi_kappa ? omega * phi * kappa : phi * omega * kappa;
+  const Matrix3d enu_R_camera = kind == ImageAngles::omega_phi_kappa
+                                    ? matrix_of_omega_phi_kappa({a[0], a[1], a[2]})
+                                    : Eigen::AngleAxisd(a[1], Vector3d::UnitY()) * matrix_of_omega_phi_kappa({a[0], 0.0, a[2]});
   return local_R_enu * enu_R_camera * read.block.cameras[i.camera].body_R_camera.transpose();
 }
 

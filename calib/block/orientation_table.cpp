@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/orientation_table.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,12 @@ std::string table_field(const char* form, double value) {
 
 Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& R) {
   return {std::atan2(-R(1, 2), R(2, 2)), std::asin(std::clamp(R(0, 2), -1.0, 1.0)), std::atan2(-R(0, 1), R(0, 0))};
+}
+
+Eigen::Matrix3d matrix_of_omega_phi_kappa(const Eigen::Vector3d& a) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  return (AngleAxisd(a[0], Vector3d::UnitX()) * AngleAxisd(a[1], Vector3d::UnitY()) * AngleAxisd(a[2], Vector3d::UnitZ()))
+      .toRotationMatrix();
 }
 
 int plan_decimals(const Eigen::Vector3d& map) {

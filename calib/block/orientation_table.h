@@ -19,6 +19,8 @@ struct ImageOrientation {
 
 /// Omega, phi, kappa of R = Rx(omega) Ry(phi) Rz(kappa), rad.
 Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& grid_R_camera);
+/// Its reverse.
+Eigen::Matrix3d matrix_of_omega_phi_kappa(const Eigen::Vector3d& angles);
 
 /// Decimals of easting and northing: 4; 10 where they are, or may be, degrees.
 int plan_decimals(const Eigen::Vector3d& map);

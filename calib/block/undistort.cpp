@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "calib/block/imagery/pixel_blend.h"
 #include "calib/block/mark_plane.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
@@ -23,20 +24,12 @@ void describe(CameraFile& f, V& v) {
   v.tables("camera", f.cameras, "Cameras.");
 }
 
-/// Values at a place in pixels from the centre of the first one; nothing changes outside the centres of the outer pixels.
-void sample(const io::ImageRaster& image, double x, double y, std::uint16_t* out) {
-  constexpr double rounding = 1e-6;
-  if (x < -rounding || y < -rounding || x > image.columns - 1 + rounding || y > image.rows - 1 + rounding) return;
-  const int column = std::clamp(static_cast<int>(std::floor(x)), 0, std::max(0, image.columns - 2)),
-            row = std::clamp(static_cast<int>(std::floor(y)), 0, std::max(0, image.rows - 2));
-  const double u = std::clamp(x - column, 0.0, 1.0), w = std::clamp(y - row, 0.0, 1.0);
-  const int right = std::min(column + 1, image.columns - 1), below = std::min(row + 1, image.rows - 1);
-  for (int b = 0; b < image.bands; ++b) {
-    const auto value = [&](int c, int r) { return static_cast<double>(image.values[image.at(c, r) + static_cast<size_t>(b)]); };
-    const double above = (1.0 - u) * value(column, row) + u * value(right, row),
-                 under = (1.0 - u) * value(column, below) + u * value(right, below);
-    out[b] = static_cast<std::uint16_t>(std::lround((1.0 - w) * above + w * under));
-  }
+/// Values at a place in pixels; nothing changes outside the centres of the outer pixels.
+void sample(const io::ImageRaster& image, const Eigen::Vector2d& at, std::uint16_t* out) {
+  constexpr double rounding = 1e-6, half = 0.5 - rounding;
+  if (at.x() < half || at.y() < half || at.x() > image.columns - half || at.y() > image.rows - half) return;
+  const PixelBlend blend(image, at.x(), at.y());
+  for (int b = 0; b < image.bands; ++b) out[b] = static_cast<std::uint16_t>(std::lround(blend.of(static_cast<size_t>(b))));
 }
 
 }  // namespace
@@ -71,8 +64,7 @@ io::ImageRaster undistorted(const io::ImageRaster& image, const CameraConfig& co
       const Eigen::Vector3d direction((column + 0.5 - out.columns / 2.0) * side, (out.rows / 2.0 - row - 0.5) * side, -camera.value[0]);
       const auto seen = image_of(camera.value, camera.distortion, direction);
       if (!seen) continue;
-      const Eigen::Vector2d at = in_pixels(*seen, config);
-      sample(image, at.x() - 0.5, at.y() - 0.5, &out.values[out.at(column, row)]);
+      sample(image, in_pixels(*seen, config), &out.values[out.at(column, row)]);
     }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/block/imagery/pixel_blend.h"
 #include "io/raster/image_raster.h"
 
 namespace swath::calib {
@@ -16,18 +17,9 @@ struct Window {
   int column = 0, row = 0;
   io::ImageRaster raster;
 
-  /// Bilinear between the centres of pixels; at the rim as in the outermost ones. Adds to `sum`.
   void add(double x, double y, std::array<double, 3>& sum) const {
-    const double u = std::clamp(x - column - 0.5, 0.0, raster.columns - 1.0), w = std::clamp(y - row - 0.5, 0.0, raster.rows - 1.0);
-    const int left = static_cast<int>(u), above = static_cast<int>(w);
-    const int right = std::min(left + 1, raster.columns - 1), below = std::min(above + 1, raster.rows - 1);
-    const double a = u - left, b = w - above;
-    const std::uint16_t *p = &raster.values[raster.at(left, above)], *q = &raster.values[raster.at(right, above)],
-                        *r = &raster.values[raster.at(left, below)], *s = &raster.values[raster.at(right, below)];
-    for (size_t k = 0; k < 3; ++k) {
-      const size_t band = raster.bands < 3 ? 0 : k;
-      sum[k] += (1 - a) * (1 - b) * p[band] + a * (1 - b) * q[band] + (1 - a) * b * r[band] + a * b * s[band];
-    }
+    const PixelBlend blend(raster, x - column, y - row);
+    for (size_t k = 0; k < 3; ++k) sum[k] += blend.of(raster.bands < 3 ? 0 : k);
   }
 };
 

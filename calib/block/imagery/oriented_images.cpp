@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/imagery/oriented_images.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -163,8 +162,8 @@ class OrientationTable {
     return m;
   }
   Matrix3d rotation_by_angles(size_t r) const {
-    const auto about = [&](size_t k, const Vector3d& axis) { return Eigen::AngleAxisd(table_.number(r, angles_[k]) * core::degree, axis); };
-    return (about(0, Vector3d::UnitX()) * about(1, Vector3d::UnitY()) * about(2, Vector3d::UnitZ())).toRotationMatrix();
+    const auto angle = [&](size_t k) { return table_.number(r, angles_[k]) * core::degree; };
+    return matrix_of_omega_phi_kappa({angle(0), angle(1), angle(2)});
   }
 
   io::TextTable table_;
