@@ -3,6 +3,7 @@
 import json
 import unittest
 import xml.etree.ElementTree
+from pathlib import Path
 
 from support import CLOUD, SMALL, Case, simulate, stage, swath
 
@@ -79,6 +80,9 @@ class Quality(Case):
         self.assertEqual(self.codes("--check", file), [])
         said = swath("qc", self.cloud, "--output", self.folder / "said", "--check", file)
         self.assertRegex(said.stdout, r"pnezd\.csv has no header: column 3 is taken as easting, 2 as northing, 4 as height, 1 as name: so 12 of 12 points lie")
+        table = stage(self.judged("--check", file), "quality.points")["findings"]["files"]
+        self.assertEqual([{k: t[k] for k in ("name", "x", "y", "z")} for t in table], [{"name": "1", "x": "3", "y": "2", "z": "4"}])
+        self.assertEqual(Path(table[0]["file"]).name, "pnezd.csv")
         self.assertEqual(self.codes("--check", file, "--check-columns", "1,3,2,4"), [])
         self.assertIn("check.outside", self.codes("--check", file, "--check-columns", "1,2,3,4"))
 

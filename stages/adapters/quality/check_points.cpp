@@ -53,6 +53,7 @@ double halo(const CheckPointOptions& o) { return o.radius.value; }
 
 struct CheckPointFindings {
   std::optional<std::string> none{};
+  std::vector<CheckFileRead> files{};
   std::uint64_t marks = 0, corners = 0;
   std::vector<std::string> outside{}, unread{};
   std::optional<double> nva{}, vva{}, vva_95{};
@@ -69,6 +70,7 @@ template <class V>
 void describe(const CheckPointFindings& r, V& v) {
   using core::metres;
   v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
+  v.tables("files", r.files, "Tables of check points with the columns that were taken; numbers count from 1.");
   v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
   v.result("corners", r.corners, core::if_any(), "Corners of targets, whose edges are compared.");
   v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()),
@@ -344,6 +346,7 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   std::sort(readings.begin(), readings.end(),
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
   const std::vector<MarkFound> at = found_at(context, marks, readings, seen);
+  found.files = tables_read(context.survey);
   found.marks = marks.list.size();
   found.corners = marks.corners;
   name_records(marks, at, seen, found);

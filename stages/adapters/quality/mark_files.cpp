@@ -33,6 +33,14 @@ std::string cell_of(double v) {
 
 }  // namespace
 
+std::vector<CheckFileRead> tables_read(const io::Survey& survey) {
+  std::vector<CheckFileRead> out;
+  for (const io::ControlFile& f : survey.control)
+    if (f.use == io::ControlUse::check && f.kind == io::ControlKind::xyz && core::lower_case(f.file.extension().string()) != ".gpkg")
+      out.push_back({f.file.generic_string(), f.name, f.x, f.y, f.z});
+  return out;
+}
+
 void write_marks(const Context& context, const std::string& name, const std::vector<quality::CheckMark>& marks,
                  const std::vector<MarkFound>& found, const std::vector<quality::MarkReading>& readings) {
   std::string table = "name,x,y,z,sigma,cover,points_minus_mark,dtm_minus_mark,predicted_sigma,slope,lines\n";
