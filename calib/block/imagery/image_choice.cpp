@@ -36,6 +36,8 @@ std::optional<Eigen::Vector2d> ImageChoice::pixel_of(std::uint32_t image, const 
   const CameraConfig& config = images_.configs[i.camera];
   const Eigen::Vector2d pixel = in_pixels(*plane, config);
   if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= config.columns && pixel.y() <= config.rows)) return {};
+  constexpr int margin = 2;  // pixels: neighbours of a rim are mixed with it
+  if (images_.is_rim(i.camera, pixel, margin)) return {};
   return pixel;
 }
 

@@ -23,17 +23,23 @@ struct Window {
   }
 };
 
-/// The mean over a square by as many bilinear values as it has pixels.
-Colour colour_at(const Window& w, const ImagePlace& p) {
+/// The mean over a square by as many bilinear values as it has pixels, those on a rim left out.
+Colour colour_at(const Window& w, const ImagePlace& p, const OrientedImages& images) {
   constexpr int max_samples = 32;  // along a side
   const int n = std::clamp(static_cast<int>(std::lround(p.side)), 1, max_samples);
+  const double side = p.side > 1.0f ? static_cast<double>(p.side) : 0.0;
+  const std::uint32_t camera = images.images[p.image].camera;
   std::array<double, 3> sum{};
+  int samples = 0;
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      w.add(static_cast<double>(p.x) + ((i + 0.5) / n - 0.5) * static_cast<double>(p.side > 1.0f ? p.side : 0.0f),
-            static_cast<double>(p.y) + ((j + 0.5) / n - 0.5) * static_cast<double>(p.side > 1.0f ? p.side : 0.0f), sum);
+    for (int i = 0; i < n; ++i) {
+      const double x = static_cast<double>(p.x) + ((i + 0.5) / n - 0.5) * side, y = static_cast<double>(p.y) + ((j + 0.5) / n - 0.5) * side;
+      if (images.is_rim(camera, {x, y}, 1)) continue;
+      w.add(x, y, sum);
+      ++samples;
+    }
   Colour out;
-  const double scale = (w.raster.bits == 8 ? of_8_bits : 1.0) / (n * n);
+  const double scale = (w.raster.bits == 8 ? of_8_bits : 1.0) / std::max(1, samples);
   for (size_t k = 0; k < 3; ++k) out[k] = static_cast<std::uint16_t>(std::lround(std::min(sum[k] * scale, 65535.0)));
   return out;
 }
@@ -72,7 +78,7 @@ std::vector<Colour> colours_of(const OrientedImages& images, const std::vector<I
   for (size_t i = 0; i < images.images.size(); ++i) {
     if (begin[i] == begin[i + 1]) continue;
     const Window window = window_of(images, places, rows, begin[i], begin[i + 1]);
-    for (size_t k = begin[i]; k < begin[i + 1]; ++k) out[rows[k]] = colour_at(window, places[rows[k]]);
+    for (size_t k = begin[i]; k < begin[i + 1]; ++k) out[rows[k]] = colour_at(window, places[rows[k]], images);
   }
   return out;
 }

@@ -254,10 +254,16 @@ class Reader {
           "no file in the folder matches an oriented image" + first, sources.front().folder.string(),
           "files are named as the column image of " + sources.front().orientation.string() + " has it, with or without extension");
     }
+    find_rims();
     return std::move(out_);
   }
 
  private:
+  void find_rims() {
+    std::vector<std::vector<fs::path>> files(out_.cameras.size());
+    for (const OrientedImage& i : out_.images) files[i.camera].push_back(i.file);
+    for (const std::vector<fs::path>& of_camera : files) out_.rims.push_back(rim_of(of_camera));
+  }
   /// The frame's middle: the first image, on the map.
   void start_frame(const Vector3d& place, const std::string& crs) {
     out_.middle = place;

@@ -10,6 +10,7 @@
 #include "calib/block/block_config.h"
 #include "calib/block/block_frame.h"
 #include "calib/block/image_block.h"
+#include "calib/block/imagery/black_rim.h"
 #include "calib/block/imagery/joint_covariance.h"
 
 namespace swath::calib {
@@ -57,10 +58,15 @@ struct OrientedImages {
   std::vector<CameraConfig> configs;
   std::vector<BlockCamera> cameras;
   std::vector<CameraCovariance> camera_covariance;  ///< per camera
+  std::vector<BlackRim> rims;                       ///< per camera: what its photographs do not show
   std::vector<OrientedImage> images;
   std::vector<std::string> without_file;  ///< oriented images that the folders do not have
   int bits = 8;                           ///< of the photographs: 8, or 16 where one has them
 
+  /// Does a place on a camera's photographs lie on their rim, or nearer to it than `margin` pixels?
+  bool is_rim(std::uint32_t camera, const Eigen::Vector2d& pixel, int margin) const {
+    return camera < rims.size() && rims[camera].hides(pixel, margin);
+  }
   /// For one thread.
   BlockFrame frame() const { return {map.crs, middle}; }
 };

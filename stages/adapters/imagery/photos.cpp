@@ -80,7 +80,8 @@ calib::OrientedImages photos_of(const Context& context) {
 }
 
 PhotoFindings findings_of(const calib::OrientedImages& images) {
-  return {images.images.size(), images.without_file.size(), images.without_file};
+  const auto rims = std::ranges::count_if(images.rims, [](const calib::BlackRim& rim) { return rim.any(); });
+  return {images.images.size(), static_cast<std::uint64_t>(rims), images.without_file.size(), images.without_file};
 }
 
 void expect_seen(const calib::OrientedImages& images, const Context& context, const std::vector<TileKey>& tiles, std::uint64_t seen,

@@ -25,12 +25,14 @@ calib::OrientedImages photos_of(const Context& context);
 
 /// What is known of the photographs.
 struct PhotoFindings {
-  std::uint64_t images = 0, missing = 0;
+  std::uint64_t images = 0, rims = 0, missing = 0;
   std::vector<std::string> without_file{};
 };
 template <class V>
 void describe(const PhotoFindings& r, V& v) {
   v.result("images", r.images, core::plain().in_summary(), "Photographs with an orientation.");
+  v.result("cameras_with_rim", r.rims, core::if_any().in_summary(),
+           "Cameras whose photographs have a black rim, as undistorted ones have: no colour is taken from it.");
   v.result("images_without_file", r.missing, core::if_any().in_summary(), "Oriented images that the folder does not have.");
   v.result("without_file", r.without_file, core::if_any(), "Their names.");
 }

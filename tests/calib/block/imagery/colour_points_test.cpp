@@ -61,6 +61,32 @@ TEST(ColourPoints, EachPointHasTheColourOfItsPlace) {
   EXPECT_GT(wrong_share(without, scene), 3.0 * wrong_share(b, scene));
 }
 
+TEST(ColourPoints, TheBlackRimOfUndistortedPhotographsIsNoColour) {
+  MadeScene scene;
+  scene.roof = 0.0;
+  const MadePhotos photos(three, scene);
+  for (const MadePhoto& p : three) {
+    const std::filesystem::path file = photos.folder() / "photos" / (p.name + ".tif");
+    io::ImageRaster image = io::read_image_raster(file);
+    for (int r = 0; r < image.rows; ++r)
+      for (int c = 0; c < image.columns; ++c)
+        if (c < 105) std::fill_n(&image.values[image.at(c, r)], 3, std::uint16_t{0});
+    io::write_image_raster(file, image);
+  }
+  const auto wrong = [&](const OrientedImages& images) {
+    core::Block b = points_of(scene);
+    const ColourCounts n = colour_points(b, b.size(), images, {});
+    EXPECT_EQ(n.coloured, b.size());  // another photograph shows what the rim of one does not
+    size_t out = 0;
+    for (size_t i = 0; i < b.size(); ++i) out += worst_difference(b, i, scene) > 1.1;
+    return out;
+  };
+  OrientedImages images = photos.read();
+  EXPECT_EQ(wrong(images), 0u);
+  images.rims.clear();
+  EXPECT_GT(wrong(images), 100u);
+}
+
 TEST(ColourPoints, WithoutTheSearchForWhatHidesGroundTakesTheRoofsColour) {
   MadeScene scene;
   scene.roof = 30.0;
