@@ -14,6 +14,7 @@
 
 #include "core/config/option_visitors.h"
 #include "filters/noise/visibility.h"
+#include "io/raster/image_raster.h"
 #include "io/text/value_file.h"
 #include "stages/registry.h"
 #include "tests/world/support.h"
@@ -105,6 +106,17 @@ std::string name_of(const Case& c, size_t number) {
   return out;
 }
 
+/// Two photographs from 600 m above the level grids, 240 m by 180 m on the ground.
+void add_photos(const std::filesystem::path& folder, io::Survey& survey) {
+  std::filesystem::create_directories(folder / "photos");
+  io::ImageRaster image{2000, 1500, 3, 8, {}};
+  image.values.assign(static_cast<size_t>(image.columns) * static_cast<size_t>(image.rows) * 3, 100);
+  for (const char* name : {"a.tif", "b.tif"}) io::write_image_raster(folder / "photos" / name, image);
+  test::write_bytes(folder / "orientation.csv", "image,x,y,z,omega,phi,kappa\na,500050,5000060,700,0,0,0\nb,500070,5000060,700,0,0,0\n");
+  test::write_bytes(folder / "camera.toml", "[[camera]]\nname = \"c\"\nf = \"50 mm\"\ncolumns = 2000\nrows = 1500\npixel = \"10 um\"\n");
+  survey.photos.push_back({folder / "photos", folder / "orientation.csv", folder / "camera.toml", ""});
+}
+
 struct Taken {
   double measured, declared;
   size_t points;
@@ -118,7 +130,8 @@ Taken take(const Case& c, double side, double spacing) {
   core::read_options([&](core::Visitor& v) { stage->visit(v); }, io::parse_toml(c.options, "test"), "", faults);
   core::throw_if_any(faults);
   const test::TemporaryFolder folder;
-  const io::Survey survey;
+  io::Survey survey;
+  if (c.type.starts_with("images.")) add_photos(folder.path(), survey);
   const LevelGrids grids;
   Context context{survey};
   context.tile_side = side;
@@ -189,7 +202,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"terrain.dtm", "cell = \"0.25 m\""}, Case{"terrain.dsm", "cell = \"0.25 m\""}, Case{"terrain.canopy", ""},
                     Case{"terrain.relief", ""}, Case{"terrain.density", "cell = \"0.25 m\""},
                     Case{"terrain.intensity", "cell = \"0.25 m\""}, Case{"terrain.penetration", "cell = \"0.5 m\"", 260.0},
-                    Case{"terrain.contours", ""}, Case{"writers.gdal", "", 260.0}),
+                    Case{"terrain.contours", ""}, Case{"writers.gdal", "", 260.0}, Case{"images.colour", ""}, Case{"images.orthophoto", ""},
+                    Case{"images.orthophoto", "cell = \"0.1 m\""}, Case{"images.true_orthophoto", ""}),
     [](const auto& tested) { return name_of(tested.param, tested.index); });
 
 INSTANTIATE_TEST_SUITE_P(Slow, Memory,
