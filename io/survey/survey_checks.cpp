@@ -9,6 +9,7 @@
 #include "io/records/csd.h"
 #include "io/records/event_marks.h"
 #include "io/records/imu_axes.h"
+#include "io/text/text_faults.h"
 
 namespace swath::io {
 
@@ -140,13 +141,18 @@ class Checks {
       fault(key + ".date", "'" + t.date + "' is no date", "write it as YYYY-MM-DD");
   }
 
+  void no_format(const std::filesystem::path& file, const std::string& key, const std::string& formats) {
+    if (has_packed_ending(file))
+      return fault(key + ".file", "'" + file.string() + "' is packed", "unpack it first, and name the file that it holds");
+    fault(key + ".format", "the ending of '" + file.string() + "' belongs to none of the formats", "state one of " + formats);
+  }
+
   void laser(const LaserFile& f, const std::string& key) {
     exists(f.file, key + ".file");
     const LaserFormat format = format_of(f);
     const LaserColumns& c = f.columns;
     const bool own_scale = format == LaserFormat::las || format == LaserFormat::csd;
-    if (format == LaserFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, npy, las, csd");
+    if (format == LaserFormat::automatic) return no_format(f.file, key, "text, npy, las, csd");
     time(f.time, key + ".time", !c.week.empty(), own_scale);
     const auto model = model_of(survey_, f);
     const auto scans_across = [](core::ScannerModel m) {
@@ -202,8 +208,7 @@ class Checks {
     if (f.accuracy) exists(*f.accuracy, key + ".accuracy");
     const TrajectoryFormat format = format_of(f);
     const TrajectoryColumns& c = f.columns;
-    if (format == TrajectoryFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of sbet, text, csd");
+    if (format == TrajectoryFormat::automatic) return no_format(f.file, key, "sbet, text, csd");
     time(f.time, key + ".time", !c.week.empty(), format == TrajectoryFormat::csd);
     if (f.accuracy && format != TrajectoryFormat::sbet) fault(key + ".accuracy", "smrmsg files go with SBET files only");
     if (format != TrajectoryFormat::text) {
@@ -229,8 +234,7 @@ class Checks {
     exists(f.file, key + ".file");
     const RecordFormat format = format_of(f);
     const ImuColumns& c = f.columns;
-    if (format == RecordFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, npy");
+    if (format == RecordFormat::automatic) return no_format(f.file, key, "text, npy");
     time(f.time, key + ".time", !c.week.empty(), false);
     if (format != RecordFormat::text && !f.delimiter.empty()) fault(key + ".delimiter", "has no effect: the file is no text");
     if (f.kind == ImuKind::unstated)
@@ -261,8 +265,7 @@ class Checks {
     exists(f.file, key + ".file");
     const GnssFormat format = format_of(f);
     const GnssColumns& c = f.columns;
-    if (format == GnssFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, pos, nmea");
+    if (format == GnssFormat::automatic) return no_format(f.file, key, "text, pos, nmea");
     if (f.geoid_height) fault(key + ".geoid_height", "heights above the geoid are not read", "write the solution with ellipsoidal heights");
     if (f.base && format != GnssFormat::pos) fault(key + ".base", "has no effect: only RTKLIB's baselines have a base");
     if (format != GnssFormat::text) return own_fields(f, key, format == GnssFormat::nmea);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/text/text_faults.h"
 
+#include <algorithm>
+#include <array>
+
 #include "core/config/units.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/text/decimal_comma.h"
 
 namespace swath::io {
@@ -17,6 +21,11 @@ std::string packing_of(std::string_view begin) {
 }  // namespace
 
 bool is_packed(std::string_view begin) { return !packing_of(begin).empty(); }
+
+bool has_packed_ending(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 6> endings{".gz", ".zip", ".bz2", ".xz", ".7z", ".rar"};
+  return std::find(endings.begin(), endings.end(), core::lower_case(file.extension().string())) != endings.end();
+}
 
 void require_text(std::string_view begin, const std::filesystem::path& file) {
   if (const std::string by = packing_of(begin); !by.empty())

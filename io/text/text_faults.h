@@ -13,6 +13,8 @@ namespace swath::io {
 inline constexpr const char* cut_hint = "the file was cut off as it was written or copied: copy it again, or take the line out";
 /// Are these the first bytes of a file that gzip or zip has packed?
 bool is_packed(std::string_view begin);
+/// Does the name end as those of packed files do: .gz, .zip, .7z and others?
+bool has_packed_ending(const std::filesystem::path& file);
 /// What is wrong with a line whose fields are not the table's columns.
 std::string fields_and_columns(size_t fields, size_t columns, bool has_header);
 /// What may be the cause of a line with more fields than the table has columns.

@@ -149,6 +149,7 @@ TEST_F(NavigationChecks, FaultsOfNavigationRecords) {
   const std::vector<Case> cases{
       {"imu.csv", "imv.csv", "survey.toml:2", "no such file"},
       {"imu.csv", "x.dat", "imu[1].format", "ending"},
+      {"imu.csv", "imu.csv.GZ", "imu[1].file", "'imu.csv.GZ' is packed"},
       {"kind = \"rates\"\n", "", "imu[1].kind", "increments or rates"},
       {"angle_unit = \"deg\"\n", "", "imu[1].angle_unit", "not stated"},
       {"acceleration_unit = \"g\"\n", "", "imu[1].acceleration_unit", "not stated"},
@@ -177,6 +178,7 @@ TEST_F(NavigationChecks, FaultsOfNavigationRecords) {
       {"gps.log\"", "gps.log\"\nbase = [\"1 m\", \"2 m\", \"3 m\"]", "gnss[3].base", "no effect"},
       {"2025-07-08\"}", "2025-07-32\"}", "gnss[3].time.date", "no date"},
   };
+  test::write_bytes(folder_ / "imu.csv.GZ", "");
   for (const Case& c : cases) {
     const std::string text = fault_of(with(c.from, c.to, navigation));
     EXPECT_NE(text.find(c.place), std::string::npos) << c.to << "\n" << text;
