@@ -14,22 +14,39 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <vector>
+
+#include "core/wide.h"
+#include "io/text/byte_planes.h"
 
 namespace swath::io {
 namespace {
 
 constexpr int level = 1;
-constexpr size_t rows_at_once = 256;
 constexpr size_t sampled = 4096;                               // values, for the choice of the way
 constexpr size_t sampled_rows = 2048, widest_of_fields = 512;  // bytes; rows that are wider are packed as they are
 
 enum Way : std::uint32_t { plain, differences, decimals, rows };
 
+/// Room for some values that are there no longer than the next call, of whatever bytes there were before.
+class Room {
+ public:
+  template <class T>
+  T* of(size_t n) {
+    const size_t words = (n * sizeof(T) + 7) / 8;
+    if (words_.size() < words) words_.resize(words);
+    return reinterpret_cast<T*>(words_.data());
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
 struct Codec {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> pack{ZSTD_createCCtx(), &ZSTD_freeCCtx};
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> unpack{ZSTD_createDCtx(), &ZSTD_freeDCtx};
-  std::vector<std::uint8_t> planes, packed;
+  Room own, planes, packed, steps, rests;
 };
 
 Codec& codec() {
@@ -45,30 +62,6 @@ void with_width(size_t width, F&& f) {
   if (width == 4) return f(std::integral_constant<size_t, 4>());
   if (width == 8) return f(std::integral_constant<size_t, 8>());
   f(width);
-}
-
-/// Calls f(first, last) for rows that stay in the nearest cache: planes lie apart by powers of two, which fall on the same lines of it.
-template <class F>
-void by_rows(size_t n, F&& f) {
-  for (size_t first = 0; first < n; first += rows_at_once) f(first, std::min(n, first + rows_at_once));
-}
-
-void to_planes(const std::uint8_t* from, size_t n, size_t row, std::uint8_t* to) {
-  with_width(row, [=](auto width) {
-    by_rows(n, [=](size_t first, size_t last) {
-      for (size_t k = 0; k < width; ++k)
-        for (size_t i = first; i < last; ++i) to[k * n + i] = from[i * width + k];
-    });
-  });
-}
-
-void from_planes(const std::uint8_t* from, size_t n, size_t row, std::uint8_t* to) {
-  with_width(row, [=](auto width) {
-    by_rows(n, [=](size_t first, size_t last) {
-      for (size_t k = 0; k < width; ++k)
-        for (size_t i = first; i < last; ++i) to[i * width + k] = from[k * n + i];
-    });
-  });
 }
 
 /// Small ones of both signs have only low bits.
@@ -96,18 +89,19 @@ void as_numbers(void* bytes, size_t width, F&& f) {
 
 bool has_numbers(size_t width) { return width == 1 || width == 2 || width == 4 || width == 8; }
 
-/// Compressed into codec().packed; its size.
-size_t compress(const void* values, size_t n, size_t width, Way way) {
+/// Compressed into codec().packed; where, and how many bytes.
+std::span<const char> compress(const void* values, size_t n, size_t width, Way way) {
   Codec& c = codec();
-  std::vector<std::uint64_t> own((n * width + 7) / 8);
-  if (n > 0) std::memcpy(own.data(), values, n * width);
-  if (way == differences) as_numbers(own.data(), width, [n](auto* v) { difference(v, n); });
-  c.planes.resize(n * width);
-  to_planes(reinterpret_cast<const std::uint8_t*>(own.data()), n, width, c.planes.data());
-  c.packed.resize(ZSTD_compressBound(c.planes.size()));
-  const size_t size = ZSTD_compressCCtx(c.pack.get(), c.packed.data(), c.packed.size(), c.planes.data(), c.planes.size(), level);
+  auto* own = c.own.of<std::uint8_t>(n * width);
+  if (n > 0) std::memcpy(own, values, n * width);
+  if (way == differences) as_numbers(own, width, [n](auto* v) { difference(v, n); });
+  auto* planes = c.planes.of<std::uint8_t>(n * width);
+  to_planes(own, n, width, planes);
+  const size_t bound = ZSTD_compressBound(n * width);
+  char* packed = c.packed.of<char>(bound);
+  const size_t size = ZSTD_compressCCtx(c.pack.get(), packed, bound, planes, n * width, level);
   if (ZSTD_isError(size)) throw std::bad_alloc();  // with room enough nothing else fails
-  return size;
+  return {packed, size};
 }
 
 void put_head(Way way, size_t bytes, std::string& out) {
@@ -116,15 +110,15 @@ void put_head(Way way, size_t bytes, std::string& out) {
 }
 
 void put(const void* values, size_t n, size_t width, Way way, std::string& out) {
-  const size_t size = compress(values, n, width, way);
-  put_head(way, size, out);
-  out.append(reinterpret_cast<const char*>(codec().packed.data()), size);
+  const std::span<const char> packed = compress(values, n, width, way);
+  put_head(way, packed.size(), out);
+  out.append(packed.data(), packed.size());
 }
 
 Way smaller_way(const void* values, size_t n, size_t width) {
   if (!has_numbers(width) || n < 2) return plain;
   n = std::min(n, sampled);
-  return compress(values, n, width, differences) < compress(values, n, width, plain) ? differences : plain;
+  return compress(values, n, width, differences).size() < compress(values, n, width, plain).size() ? differences : plain;
 }
 
 /// The unit of the last place of a number.
@@ -160,7 +154,7 @@ struct Steps {
   double unit(double v) const { return std::max(place, last_place(v)); }
 };
 
-bool to_steps(const double* values, size_t n, Steps& s, std::vector<std::int32_t>& steps, std::vector<std::int8_t>& rests) {
+bool to_steps(const double* values, size_t n, Steps& s, std::int32_t* steps, std::int8_t* rests) {
   constexpr double most = 2e9;  // fit into 32 bits as differences from the first
   for (size_t i = 0; i < n; ++i) {
     const double v = values[i], scaled = v * s.per_metre;
@@ -176,13 +170,34 @@ bool to_steps(const double* values, size_t n, Steps& s, std::vector<std::int32_t
   return true;
 }
 
+/// What to_steps() has taken apart, by the same roundings.
+template <bool is_multiplied>
+inline void to_values(const Steps& s, const std::int32_t* __restrict steps, const std::int8_t* __restrict rests, size_t n,
+                      double* __restrict values) {
+  const double first = static_cast<double>(s.first), scale = s.scale, per_metre = s.per_metre, place = s.place, per_place = 1.0 / place;
+  for (size_t i = 0; i < n; ++i) {
+    const double number = first + steps[i];
+    const double v = is_multiplied ? number * scale : number / per_metre, whole = v * per_place;
+    const double shift = std::copysign(0x1p52, whole), rounded = std::abs(whole) < 0x1p52 ? ((whole + shift) - shift) * place : v;
+    const std::uint64_t exponent = (std::bit_cast<std::uint64_t>(rounded) >> 52) & 0x7ff;
+    const double last = std::bit_cast<double>(exponent > 52 ? (exponent - 52) << 52 : std::uint64_t{0});
+    values[i] = rounded + rests[i] * (place < last ? last : place);
+  }
+}
+SWATH_WIDE void multiplied(const Steps& s, const std::int32_t* steps, const std::int8_t* rests, size_t n, double* values) {
+  to_values<true>(s, steps, rests, n, values);
+}
+SWATH_WIDE void divided(const Steps& s, const std::int32_t* steps, const std::int8_t* rests, size_t n, double* values) {
+  to_values<false>(s, steps, rests, n, values);
+}
+
 bool inflate(const char* bytes, size_t size, void* values, size_t n, size_t width, bool summed) {
   if (ZSTD_getFrameContentSize(bytes, size) != n * width) return false;  // nor where the frame does not say
   Codec& c = codec();
-  c.planes.resize(n * width);
-  const size_t got = ZSTD_decompressDCtx(c.unpack.get(), c.planes.data(), c.planes.size(), bytes, size);
+  auto* planes = c.planes.of<std::uint8_t>(n * width);
+  const size_t got = ZSTD_decompressDCtx(c.unpack.get(), planes, n * width, bytes, size);
   if (ZSTD_isError(got) || got != n * width) return false;
-  from_planes(c.planes.data(), n, width, static_cast<std::uint8_t*>(values));
+  from_planes(planes, n, width, static_cast<std::uint8_t*>(values));
   if (summed) as_numbers(values, width, [n](auto* v) { add_up(v, n); });
   return true;
 }
@@ -213,17 +228,10 @@ bool unpack_coordinates(const char* bytes, size_t size, double* values, size_t n
   if (size < sizeof s) return false;
   std::memcpy(&s, bytes, sizeof s);
   bytes += sizeof s, size -= sizeof s;
-  std::vector<std::int32_t> steps(n);
-  std::vector<std::int8_t> rests(n);
-  if (!take_inflated(bytes, size, steps.data(), n, 4) || !take_inflated(bytes, size, rests.data(), n, 1) || size > 0) return false;
-  // Unsigned: numbers that nobody has written may not fit.
-  const auto sum = [&s](std::int32_t step) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(s.first) + static_cast<std::uint64_t>(std::int64_t{step}));
-  };
-  for (size_t i = 0; i < n; ++i) {
-    const double rounded = s.rounded(sum(steps[i]));
-    values[i] = rounded + rests[i] * s.unit(rounded);
-  }
+  auto* steps = codec().steps.of<std::int32_t>(n);
+  auto* rests = codec().rests.of<std::int8_t>(n);
+  if (!take_inflated(bytes, size, steps, n, 4) || !take_inflated(bytes, size, rests, n, 1) || size > 0) return false;
+  s.scale > 0.0 ? multiplied(s, steps, rests, n, values) : divided(s, steps, rests, n, values);
   return true;
 }
 
@@ -256,8 +264,8 @@ void pack(const void* values, size_t n, size_t width, std::string& out) { put(va
 
 void pack_coordinates(const double* values, size_t n, std::string& out) {
   constexpr double foot = 0.3048, survey_foot = 1200.0 / 3937.0;
-  std::vector<std::int32_t> steps(n);
-  std::vector<std::int8_t> rests(n);
+  auto* steps = codec().steps.of<std::int32_t>(n);
+  auto* rests = codec().rests.of<std::int8_t>(n);
   Steps s;
   s.place = common_place(values, n);
   bool found = false;
@@ -268,8 +276,7 @@ void pack_coordinates(const double* values, size_t n, std::string& out) {
       const auto inexact = [&](double scale) {
         s.scale = scale;
         return to_steps(values, some, s, steps, rests)
-                   ? static_cast<size_t>(
-                         std::count_if(rests.begin(), rests.begin() + static_cast<std::ptrdiff_t>(some), [](auto r) { return r != 0; }))
+                   ? static_cast<size_t>(std::count_if(rests, rests + some, [](auto r) { return r != 0; }))
                    : some + 1;
       };
       const size_t divided = inexact(0.0), multiplied = inexact(1.0 / per_metre);
@@ -279,8 +286,8 @@ void pack_coordinates(const double* values, size_t n, std::string& out) {
     }
   if (!found) return pack(values, n, 8, out);
   std::string parts(reinterpret_cast<const char*>(&s), sizeof s);
-  pack(steps.data(), n, 4, parts);
-  pack(rests.data(), n, 1, parts);
+  pack(steps, n, 4, parts);
+  pack(rests, n, 1, parts);
   put_head(decimals, parts.size(), out);
   out += parts;
 }
@@ -298,7 +305,7 @@ std::vector<std::uint8_t> fields_of_rows(const std::uint8_t* rows, size_t n, siz
     for (const size_t wide : {1u, 2u, 4u, 8u}) {
       if (first + wide > width) break;
       const std::vector<std::uint8_t> field = field_of(rows, n, width, first, wide);
-      const size_t packed = std::min(compress(field.data(), n, wide, plain), compress(field.data(), n, wide, differences));
+      const size_t packed = std::min(compress(field.data(), n, wide, plain).size(), compress(field.data(), n, wide, differences).size());
       const size_t bytes = to[first].bytes + packed + sizeof(PackedHead);
       if (bytes < to[first + wide].bytes) to[first + wide] = {bytes, static_cast<std::uint8_t>(wide)};
     }
