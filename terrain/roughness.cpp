@@ -10,7 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
+#include "core/wide.h"
 #include "terrain/tin/delaunay.h"
 #include "terrain/tin/tin_surface.h"
 
@@ -33,12 +36,44 @@ struct Sums {
 // Resolution of the nine sums: each far below what a single pair adds, none over 63 bits for 10^4 pairs.
 constexpr std::array<double, 9> scale{0x1p30, 0x1p30, 0x1p30, 0x1p30, 0x1p24, 0x1p16, 0x1p34, 0x1p34, 0x1p32};
 
-void add_pair(Sums& sums, double misfit_squared, double gain, double s) {
-  const double share = 1.0 / gain, y = std::min(misfit_squared, largest) * share, x1 = s * share, x2 = 0.25 * s * s * share;
-  const double near = s0 / (s0 + s), w = near * near;
-  const std::array<double, 9> terms{w, w * x1, w * x2, w * x1 * x1, w * x1 * x2, w * x2 * x2, w * y, w * y * x1, w * y * x2};
-  for (size_t k = 0; k < terms.size(); ++k) sums.v[k] += static_cast<std::int64_t>(terms[k] * scale[k]);
-  ++sums.pairs;
+/// Pairs of neighbouring triangles at work: b and c of one, and the vertex f beyond their edge, from the triangle's first vertex.
+struct Pairs {
+  static constexpr size_t size = 256;
+  using Values = std::array<double, size>;
+  Values bx, by, bz, cx, cy, cz, fx, fy, fz;
+  std::array<Values, 9> terms;  ///< times `scale`
+  std::array<size_t, size> block;
+};
+
+// Of the tensor M.
+inline double length_of(double xx, double xy, double yy) {
+  return std::sqrt((xx + yy) * (xx + yy) + 2.0 * (xx * xx + 2.0 * xy * xy + yy * yy));
+}
+
+/// As weights(), height_in() and reach_of(): M = sum w_k p_k p_k^T - q q^T.
+SWATH_WIDE void work_out(Pairs& p) {
+  for (size_t e = 0; e < Pairs::size; ++e) {
+    const double bx = p.bx[e], by = p.by[e], cx = p.cx[e], cy = p.cy[e], fx = p.fx[e], fy = p.fy[e];
+    const double inverse = 1.0 / (bx * cy - by * cx);
+    const double wb = (fx * cy - fy * cx) * inverse, wc = (bx * fy - by * fx) * inverse, wa = 1.0 - wb - wc;
+    const double misfit = p.fz[e] - wb * p.bz[e] - wc * p.cz[e];
+    const double xx = wb * bx * bx + wc * cx * cx - fx * fx, yy = wb * by * by + wc * cy * cy - fy * fy;
+    const double xy = wb * bx * by + wc * cx * cy - fx * fy, s = length_of(xx, xy, yy), square = misfit * misfit;
+    const double share = 1.0 / (1.0 + wa * wa + wb * wb + wc * wc);
+    const double y = (largest < square ? largest : square) * share, x1 = s * share, x2 = 0.25 * s * s * share;
+    const double near = s0 / (s0 + s), w = near * near;
+    p.terms[0][e] = w * scale[0], p.terms[1][e] = w * x1 * scale[1], p.terms[2][e] = w * x2 * scale[2];
+    p.terms[3][e] = w * x1 * x1 * scale[3], p.terms[4][e] = w * x1 * x2 * scale[4], p.terms[5][e] = w * x2 * x2 * scale[5];
+    p.terms[6][e] = w * y * scale[6], p.terms[7][e] = w * y * x1 * scale[7], p.terms[8][e] = w * y * x2 * scale[8];
+  }
+}
+
+void add(const Pairs& p, size_t count, std::vector<Sums>& sums) {
+  for (size_t e = 0; e < count; ++e) {
+    Sums& to = sums[p.block[e]];
+    for (size_t k = 0; k < to.v.size(); ++k) to.v[k] += static_cast<std::int64_t>(p.terms[k][e]);
+    ++to.pairs;
+  }
 }
 
 Roughness fit(const Sums& sums) {
@@ -70,9 +105,6 @@ Roughness fit(const Sums& sums) {
   return {best[0], best[1], best[2], true};
 }
 
-// Of the tensor M.
-double length_of(double xx, double xy, double yy) { return std::sqrt((xx + yy) * (xx + yy) + 2.0 * (xx * xx + 2.0 * xy * xy + yy * yy)); }
-
 }  // namespace
 
 double reach_of(const Tin& tin, std::int32_t triangle, const std::array<double, 3>& w, double x, double y) {
@@ -94,7 +126,6 @@ RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const 
   blocks_.ny = static_cast<int>(block(window.north()) + 2 - blocks_.j0);
   const core::Lattice wide{side, blocks_.i0 - 1, blocks_.j0 - 1, blocks_.nx + 2, blocks_.ny + 2};
   std::vector<Sums> sums(wide.size());
-  const auto place = [&](std::int32_t v) { return Eigen::Vector3d(tin.x[v], tin.y[v], tin.z[v]); };
   const double west = origin.x() - wide.west(), south = origin.y() - wide.south();
   // Edges are gathered without branches, which no processor would foresee.
   struct Edge {
@@ -102,6 +133,9 @@ RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const 
   };
   constexpr std::int32_t batch = 256;
   std::array<Edge, 3 * batch> edges;
+  const auto at_work = std::make_unique<Pairs>();
+  Pairs& pairs = *at_work;
+  size_t n = 0;
   const auto size = static_cast<std::int32_t>(tin.size());
   for (std::int32_t begin = 0; begin < size; begin += batch) {
     size_t count = 0;
@@ -123,19 +157,19 @@ RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const 
       if (!tin.constrained.empty() &&
           std::binary_search(tin.constrained.begin(), tin.constrained.end(), std::pair<std::int32_t, std::int32_t>(std::minmax(p, q))))
         continue;
-      // As weights(), height_in() and reach_of(), all from the triangle's first vertex: M = sum w_k p_k p_k^T - q q^T.
       const auto& v = tin.triangles[t];
-      const Eigen::Vector3d corner = place(v[0]), b = place(v[1]) - corner, c = place(v[2]) - corner, f = place(far) - corner;
-      const double inverse = 1.0 / (b.x() * c.y() - b.y() * c.x());
-      const double wb = (f.x() * c.y() - f.y() * c.x()) * inverse, wc = (b.x() * f.y() - b.y() * f.x()) * inverse, wa = 1.0 - wb - wc;
-      const double misfit = f.z() - wb * b.z() - wc * c.z();
-      const double xx = wb * b.x() * b.x() + wc * c.x() * c.x() - f.x() * f.x(),
-                   yy = wb * b.y() * b.y() + wc * c.y() * c.y() - f.y() * f.y();
-      const double xy = wb * b.x() * b.y() + wc * c.x() * c.y() - f.x() * f.y();
-      add_pair(sums[wide.at(static_cast<int>(i), static_cast<int>(j))], misfit * misfit, 1.0 + wa * wa + wb * wb + wc * wc,
-               length_of(xx, xy, yy));
+      const double x0 = tin.x[v[0]], y0 = tin.y[v[0]], z0 = tin.z[v[0]];
+      pairs.bx[n] = tin.x[v[1]] - x0, pairs.by[n] = tin.y[v[1]] - y0, pairs.bz[n] = tin.z[v[1]] - z0;
+      pairs.cx[n] = tin.x[v[2]] - x0, pairs.cy[n] = tin.y[v[2]] - y0, pairs.cz[n] = tin.z[v[2]] - z0;
+      pairs.fx[n] = tin.x[far] - x0, pairs.fy[n] = tin.y[far] - y0, pairs.fz[n] = tin.z[far] - z0;
+      pairs.block[n++] = wide.at(static_cast<int>(i), static_cast<int>(j));
+      if (n < Pairs::size) continue;
+      work_out(pairs);
+      add(pairs, std::exchange(n, 0), sums);
     }
   }
+  work_out(pairs);
+  add(pairs, n, sums);
   fitted_.resize(blocks_.size());
   for (int j = 0; j < blocks_.ny; ++j)
     for (int i = 0; i < blocks_.nx; ++i) {

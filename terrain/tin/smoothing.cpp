@@ -15,6 +15,7 @@
 #include <span>
 #include <utility>
 
+#include "core/wide.h"
 #include "terrain/tin/faces.h"
 
 namespace swath::terrain {
@@ -226,7 +227,7 @@ struct Plane {
 };
 
 /// By weighted least squares through a vertex and its neighbours.
-Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edge> ring) {
+[[gnu::always_inline]] inline Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edge> ring) {
   float s = 1.0F;
   Signal f = signals[v], fx = Signal::Zero(), fy = Signal::Zero();
   Eigen::Array4f sum = Signal::Zero(), sum_x = Signal::Zero(), sum_y = Signal::Zero();  // of {x, y, rise}, times 1, x and y
@@ -261,7 +262,7 @@ Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edg
 }
 
 /// The mean of what the planes foretell.
-Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, std::span<const Edge> ring) {
+[[gnu::always_inline]] inline Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, std::span<const Edge> ring) {
   float weights = planes[v].quality, rise = 0.0F;
   Signal sum = weights * planes[v].at;
   for (const Edge& e : ring) {
@@ -276,7 +277,7 @@ Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, s
 }
 
 /// The signals of a part's vertices after all passes; those on its rim are not of use.
-void smooth(const Tin& tin, const Part& part, const Rings& rings, std::vector<Signal>& signals, std::vector<Plane>& planes) {
+SWATH_WIDE void smooth(const Tin& tin, const Part& part, const Rings& rings, std::vector<Signal>& signals, std::vector<Plane>& planes) {
   signals.resize(part.size());
   for (size_t i = 0; i < part.size(); ++i) signals[i] = white_noise(tin.x[part.at(i)], tin.y[part.at(i)]);
   planes.assign(part.size(), Plane());
