@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <set>
 
-#include "calib/block/undistort.h"
+#include "calib/block/imagery/undistort.h"
 #include "core/config/units.h"
 #include "core/error.h"
 #include "io/text/output_file.h"

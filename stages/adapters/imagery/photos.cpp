@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/block/undistort.h"
+#include "calib/block/imagery/undistort.h"
 #include "core/config/units.h"
 #include "core/error.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/block/undistort.h"
+#include "calib/block/imagery/undistort.h"
 #include "tests/calib/block/imagery/made_photos.h"
 
 namespace swath::calib::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Each pixel of the result is a direction of the ideal camera; its value is the image's where the camera saw that direction.
-#include "calib/block/undistort.h"
+#include "calib/block/imagery/undistort.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/undistort.h"
+#include "calib/block/imagery/undistort.h"
 
 #include <gtest/gtest.h>
 
