@@ -9,7 +9,11 @@
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define SWATH_WIDE [[gnu::target_clones("avx2", "default")]]
-#define SWATH_HAS_WIDE  ///< a function for processors with AVX2 may be written beside the other
 #else
 #define SWATH_WIDE
+#endif
+
+/// Defined where a unit may hold a function of its own for processors with AVX2 and choose it at run time.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define SWATH_HAS_WIDE
 #endif

@@ -41,7 +41,7 @@ void copy_whole(const fs::path& from, const fs::path& to, const fs::path& named)
 
 /// `spare`: a name beside the files made, which the file has until it gets its own. Only one run works in an output folder.
 void deliver_file(const fs::path& from, const fs::path& to, const fs::path& spare, bool keep) {
-  const fs::path beside = to.parent_path() / (".part-" + to.filename().string());
+  const fs::path beside = to.parent_path() / (io::temporary_mark + to.filename().string());
   std::error_code ec;
   fs::create_directories(to.parent_path(), ec);
   if (ec) io::throw_system_error("cannot make the folder of the output", to, ec.value());
@@ -98,7 +98,7 @@ void check_delivery(const fs::path& made, const fs::path& output, const Allowed&
 
 void deliver_one(const fs::path& made, const fs::path& output, bool keep) {
   const std::vector<fs::path> files = files_below(made);
-  const fs::path spare = made.parent_path() / ".part-delivery";
+  const fs::path spare = made.parent_path() / (std::string(io::temporary_mark) + "delivery");
   std::set<fs::path> folders;
   for (const fs::path& file : files) {
     if (file.filename() != list_name) deliver_file(made / file, output / file, spare, keep);

@@ -100,6 +100,10 @@ Trajectory::Trajectory(core::TrajectoryData data, const TrajectoryOptions& optio
 Trajectory::Trajectory(PoseRecords records, const TrajectoryOptions& options, const std::string& where)
     : ecef_(std::move(records.position)), attitude_(std::move(records.ecef_R_body)) {
   data_.time = std::move(records.time);
+  if (ecef_.size() != data_.size() || attitude_.size() != data_.size()) throw core::Error("columns of poses differ in length", where);
+  for (size_t i = 0; i < data_.size(); ++i)
+    if (!std::isfinite(data_.time[i]) || !ecef_[i].allFinite() || !attitude_[i].allFinite())
+      throw core::Error("a pose is not of finite numbers", at_record(where, i));
   check_times(data_.time, where);
   find_spans(options, where);
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/block/block_system.h"
-#include "calib/block/node_matrix.h"
+#include "calib/sparse/node_matrix.h"
 
 namespace swath::calib {
 

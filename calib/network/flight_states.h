@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/block/node_matrix.h"
+#include "calib/sparse/node_matrix.h"
 #include "trajectory/ins/ins_problem.h"
 
 namespace swath::calib {
@@ -14,7 +14,7 @@ namespace swath::calib {
 /// Nodes of a NodeMatrix: two per instant with the errors that change, `pose` (position, attitude: what surfaces see) and `motion`
 /// (velocity, biases, the fixes' correlated part), and a last one, `common`, with those that do not (scales, lever arm, latency, a
 /// vehicle's axis), followed by the scanner's calibration. Lines share planes by their poses alone: with one node per instant each such
-/// pair would take nine times the memory, and the factor nearly twice the work.
+/// pair would take six to nine times the memory, and the factor nearly twice the work.
 class FlightStates {
  public:
   /// `calibration`: number of the calibration's unknowns.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Normal equations by nodes, factorised by fronts and inverted on the factor's pattern (calib/block/node_matrix.h): time and memory grow
+// Normal equations by nodes, factorised by fronts and inverted on the factor's pattern (calib/sparse/node_matrix.h): time and memory grow
 // with the number of instants, and nothing dense is ever of the flight's size.
 #include "calib/network/network.h"
 

@@ -20,8 +20,7 @@ using Eigen::VectorXd;
 constexpr double planes_settled = 0.2;     // sigmas of all unknowns together
 constexpr double steady_returns = 0.005;   // m: planes are found the same way with returns that have moved by less
 constexpr double closest_mismatch = 0.05;  // m
-constexpr double least_margin = 0.25;      // s of the trajectory about returns
-constexpr double records_of_margin = 4.0;  // what a cubic takes of them on either side, and one more
+constexpr double margin = 0.25;  // s of the trajectory about returns: more than three records at the least output_rate, for a cubic
 constexpr double usual_network_rounds = 3.0, search_part = 0.3;
 constexpr double first_part = 0.6;  // of the iterations, before groups are weighed
 constexpr int most_updates = 12;    // of the surfaces' sigma in one round
@@ -51,6 +50,7 @@ class NetworkRounds {
         options_(options),
         unknown_(unknown_values(options.estimate)),
         network_(problem_, smoothed.estimates, smoothed.outcomes, prior_of(smoothed), static_cast<int>(unknown_.size())),
+        output_(problem_, options.smoother.output_rate.value),
         surface_(options.surface_sigma.value) {
     interpolation_.max_gap.value = std::max(interpolation_.max_gap.value, 2.5 / options.smoother.output_rate.value);
   }
@@ -65,10 +65,7 @@ class NetworkRounds {
   /// Through the present estimates, without covariances.
   trajectory::Trajectory trajectory() const { return through(std::vector<char>(network_.estimates().size() - 1, 1)); }
   /// Where the planes' returns are.
-  trajectory::Trajectory trajectory(const PlaneFactors& planes) const {
-    const double margin = std::max(least_margin, records_of_margin / options_.smoother.output_rate.value);
-    return through(planes.intervals(calibration(), margin));
-  }
+  trajectory::Trajectory trajectory(const PlaneFactors& planes) const { return through(planes.intervals(calibration(), margin)); }
 
   PlaneFactors factors(const TieSet& ties) const {
     return PlaneFactors(ties, flight_.scanner, flight_.sensor, times_of(smoothed_.nodes), unknown_, options_.robust, surface_,
@@ -148,8 +145,7 @@ class NetworkRounds {
 
  private:
   trajectory::Trajectory through(const std::vector<char>& intervals) const {
-    return trajectory::Trajectory(poses_of(problem_, network_.estimates(), options_.smoother.output_rate.value, intervals), interpolation_,
-                                  "calib.network");
+    return trajectory::Trajectory(poses_of(problem_, network_.estimates(), output_, intervals), interpolation_, "calib.network");
   }
 
   void add_start_values(NetworkNormals& into) const {
@@ -171,6 +167,7 @@ class NetworkRounds {
   const NetworkOptions& options_;
   std::vector<Parameter> unknown_;
   Network network_;
+  trajectory::OutputRecords output_;
   double surface_;
   PlaneTests tests_;
   std::uint64_t displaced_ = 0;
@@ -242,7 +239,10 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
     const auto seek = [&](const trajectory::Trajectory& now) {
       out.ties = find_tie_planes(flight.shots, flight.scanner, rounds.calibration(), now, flight.frame, targets, planes, of_round);
     };
-    seek(out.rounds == 1 ? *flight.trajectory : rounds.trajectory());
+    if (out.rounds == 1)
+      seek(*flight.trajectory);
+    else
+      seek(rounds.trajectory());
     refuse_without_common_planes(out.ties, of_round);
     progress(core::usual_share(out.rounds - 1 + search_part, usual_network_rounds), round + ": adjustment");
     PlaneFactors factors = rounds.factors(out.ties);

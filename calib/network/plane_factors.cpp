@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "calib/adjust/tie_system.h"
+#include "calib/network/brownian_bridge.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "trajectory/ins/ins_smoother.h"
@@ -39,18 +40,6 @@ CorrectionOptions without_corrections() {
 TieNoise noise_of(const core::SensorSigma& s) {
   return {std::max(least_range_sigma, s.range.value), s.scan_angle.value, s.beam_divergence.value / 4.0, s.time.value};
 }
-
-/// Variance of a weighted sum of a Brownian motion's departures from the straight lines between instants, per unit of its spectral density:
-/// covariance dt s (1 - s') within an interval of dt, s before s' as shares of it. Times must rise.
-struct Bridge {
-  double sum = 0.0, before = 0.0;
-  int interval = -1;
-  void add(int k, double dt, double s, double weight) {
-    if (k != interval) interval = k, before = 0.0;
-    sum += dt * weight * (1.0 - s) * (2.0 * before + weight * s);
-    before += weight * s;
-  }
-};
 
 }  // namespace
 
@@ -115,7 +104,7 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
   w.rows.setZero(poses + values + 4, g.end - g.begin);
   Vector3d turn = Vector3d::Zero();
   double weights = 0.0, sum_of_f = 0.0;
-  Bridge bridge;
+  BrownianBridge bridge;
   Eigen::Index used = 0;
   for (std::uint32_t i = g.begin; i < g.end; ++i) {
     const Condition& c = w.conditions[i - g.begin];

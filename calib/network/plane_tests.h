@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/block/node_matrix.h"
 #include "calib/network/plane_factors.h"
+#include "calib/sparse/node_matrix.h"
 
 namespace swath::calib {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Directions of a place without its angles: for what is done at every record, where arc tangents and their sines would be most of the work.
+// In geodesy.cpp, beside geodetic_of, whose iteration it shares.
 #pragma once
 
 #include <Eigen/Core>

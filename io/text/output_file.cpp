@@ -34,8 +34,6 @@ constexpr const char *full_hint = "the disk is full: free space there, then run 
                      *limit_hint =
                          "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
 
-constexpr const char* temporary_mark = ".part-";
-
 std::string temporary_start() { return temporary_mark + std::to_string(getpid()) + "-"; }
 
 /// Is a temporary file beside `file` as long as the process may write one? Libraries do not always give the reason.

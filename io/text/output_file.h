@@ -29,7 +29,10 @@ class OutputFile {
   bool committed_ = false;
 };
 
-/// Has the file a temporary name of an OutputFile? Of a process that is at work, or was killed; nobody else's business.
+/// How temporary names begin.
+constexpr const char* temporary_mark = ".part-";
+
+/// Has the file a temporary name? It belongs to a process that is at work or was killed: others must not read it.
 bool is_temporary(const std::filesystem::path& file);
 
 /// Writes a small file through OutputFile.

@@ -196,8 +196,15 @@ TEST(Trajectory, ThroughPosesItIsThatOfTheAngles) {
   EXPECT_FALSE(through.covers(gap));
   EXPECT_EQ(through.pose_at(inside)->position, angles.pose_at(inside)->position);
   EXPECT_EQ(through.pose_at(inside)->ecef_R_body, angles.pose_at(inside)->ecef_R_body);
-  std::swap(poses.time[3], poses.time[4]);
-  EXPECT_THROW(Trajectory{poses}, core::Error);
+  const auto refused = [&](const auto& spoil) {
+    PoseRecords bad = poses;
+    spoil(bad);
+    EXPECT_THROW(Trajectory{std::move(bad)}, core::Error);
+  };
+  refused([](PoseRecords& p) { std::swap(p.time[3], p.time[4]); });
+  refused([](PoseRecords& p) { p.position[5].y() = std::nan(""); });
+  refused([](PoseRecords& p) { p.ecef_R_body[5](1, 2) = std::nan(""); });
+  refused([](PoseRecords& p) { p.time.pop_back(); });
 }
 
 void expect_error(core::TrajectoryData d, const std::string& where, const std::string& what) {

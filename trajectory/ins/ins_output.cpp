@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
@@ -43,83 +44,37 @@ void append(core::TrajectoryData& out, const NavState& nav, const Eigen::Matrix<
 constexpr double same_record = 1e-6;  // s
 constexpr size_t intervals_of_a_part = 256;
 
+size_t parts_of(size_t intervals) { return (intervals + intervals_of_a_part - 1) / intervals_of_a_part; }
+
 /// The walk is at the end of a record that is not a bridge, not at a cut.
 bool at_record(const ImuPath& path, const ImuWalk& walk) {
   return std::abs(walk.time() - path.imu.time[walk.record()]) < same_record && !path.is_bridged(walk.record());
 }
 
-/// Which of the IMU's records make an output at no more than a rate: every so many, counted from the flight's first.
-class Thinning {
- public:
-  Thinning(const Problem& problem, double rate) {
-    const ImuPath& path = problem.path;
-    const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
-    every_ = static_cast<std::uint64_t>(std::max(1.0, std::round(1.0 / (rate * step))));
-    const size_t intervals = problem.nodes.size() - 1, parts = (intervals + intervals_of_a_part - 1) / intervals_of_a_part;
-    before_.assign(parts + 1, 0);
-    if (every_ == 1) return;
-    core::in_parallel(intervals, intervals_of_a_part, [&](size_t first, size_t last) {
-      std::uint64_t& count = before_[first / intervals_of_a_part + 1];
-      Increment piece;
-      ImuWalk walk(path, problem.nodes[first].time);
-      for (size_t k = first; k < last; ++k)
-        while (walk.next(problem.nodes[k + 1].time, piece)) count += at_record(path, walk) ? 1 : 0;
-    });
-    for (size_t p = 0; p < parts; ++p) before_[p + 1] += before_[p];
+/// The output's states in the interval from node k on, moved so that they end at the next node.
+void states_between(const Problem& problem, const OutputRecords& records, size_t k, const Estimate& start, const NavState& next,
+                    std::vector<NavState>& out) {
+  const std::vector<Node>& nodes = problem.nodes;
+  NavState nav = start.nav;
+  ImuWalk walk(problem.path, nodes[k].time);
+  std::uint64_t count = records.before(k);
+  out.clear();
+  Increment piece;
+  while (walk.next(nodes[k + 1].time, piece)) {
+    advance(nav, start.corrected(piece));
+    nav.time = walk.time();
+    if (at_record(problem.path, walk) && records.takes(count++)) out.push_back(nav);
   }
-  size_t parts() const { return before_.size() - 1; }
-  bool takes_all() const { return every_ == 1; }
-  std::uint64_t before(size_t part) const { return before_[part]; }
-  bool takes(std::uint64_t record) const { return record % every_ == 0; }
-
- private:
-  std::uint64_t every_ = 1;
-  std::vector<std::uint64_t> before_;  ///< records before each part; where all are taken nobody counts
-};
-
-/// Gives the output's states of one interval after another, moved so that they end at the next node. One per part of the intervals.
-class Between {
- public:
-  Between(const Problem& problem, const Thinning& thinning, size_t part)
-      : problem_(problem), thinning_(thinning), count_(thinning.before(part)) {}
-
-  /// From node k on; valid until the next call.
-  const std::vector<NavState>& states(size_t k, const Estimate& start, const NavState& next) {
-    const std::vector<Node>& nodes = problem_.nodes;
-    NavState nav = start.nav;
-    ImuWalk walk(problem_.path, nodes[k].time);
-    states_.clear();
-    Increment piece;
-    while (walk.next(nodes[k + 1].time, piece)) {
-      advance(nav, start.corrected(piece));
-      nav.time = walk.time();
-      if (at_record(problem_.path, walk) && thinning_.takes(count_++)) states_.push_back(nav);
-    }
-    const double length = nodes[k + 1].time - nodes[k].time;
-    const Vector3d position = next.position - nav.position, velocity = next.velocity - nav.velocity;
-    const Vector3d turn = core::log_so3(next.ecef_R_body * nav.ecef_R_body.transpose());
-    for (NavState& n : states_) {
-      const double s = (n.time - nodes[k].time) / length;
-      n.position += (3 - 2 * s) * s * s * position + (s - 1) * s * s * length * velocity;
-      n.velocity += s * velocity;
-      n.ecef_R_body = core::exp_so3(s * turn) * n.ecef_R_body;
-    }
-    return states_;
+  const double length = nodes[k + 1].time - nodes[k].time;
+  const Vector3d position = next.position - nav.position, velocity = next.velocity - nav.velocity;
+  const Vector3d turn = core::log_so3(next.ecef_R_body * nav.ecef_R_body.transpose());
+  for (NavState& n : out) {
+    const double s = (n.time - nodes[k].time) / length;
+    n.position += (3 - 2 * s) * s * s * position + (s - 1) * s * s * length * velocity;
+    n.velocity += s * velocity;
+    n.ecef_R_body = core::exp_so3(s * turn) * n.ecef_R_body;
   }
-  /// Counts the records of an interval that nobody wants.
-  void pass(size_t k) {
-    if (thinning_.takes_all()) return;
-    Increment piece;
-    ImuWalk walk(problem_.path, problem_.nodes[k].time);
-    while (walk.next(problem_.nodes[k + 1].time, piece)) count_ += at_record(problem_.path, walk) ? 1 : 0;
-  }
-
- private:
-  const Problem& problem_;
-  const Thinning& thinning_;
-  std::uint64_t count_;
-  std::vector<NavState> states_;
-};
+}
 
 void append(core::TrajectoryData& out, const core::TrajectoryData& part) {
   using Data = core::TrajectoryData;
@@ -134,6 +89,21 @@ void append(core::TrajectoryData& out, const core::TrajectoryData& part) {
 
 }  // namespace
 
+OutputRecords::OutputRecords(const Problem& problem, double rate) {
+  const ImuPath& path = problem.path;
+  const double step = (path.end() - path.begin()) / static_cast<double>(path.imu.size());
+  every_ = static_cast<std::uint64_t>(std::max(1.0, std::round(1.0 / (rate * step))));
+  if (every_ == 1 || problem.nodes.size() < 2) return;
+  before_.assign(problem.nodes.size(), 0);
+  core::in_parallel(problem.nodes.size() - 1, intervals_of_a_part, [&](size_t first, size_t last) {
+    Increment piece;
+    ImuWalk walk(path, problem.nodes[first].time);
+    for (size_t k = first; k < last; ++k)
+      while (walk.next(problem.nodes[k + 1].time, piece)) before_[k + 1] += at_record(path, walk) ? 1 : 0;
+  });
+  for (size_t k = 1; k < before_.size(); ++k) before_[k] += before_[k - 1];
+}
+
 core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<SmoothedNode>& smoothed, double rate) {
   const std::vector<Node>& nodes = problem.nodes;
   core::TrajectoryData out;
@@ -142,17 +112,18 @@ core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<Smo
     out.covariance.upper.push_back(smoothed[k].covariance);
   }
   if (nodes.size() < 2) return out;
-  const Thinning thinning(problem, rate);
-  std::vector<core::TrajectoryData> made(thinning.parts());
+  const OutputRecords records(problem, rate);
+  std::vector<core::TrajectoryData> made(parts_of(nodes.size() - 1));
   core::in_parallel(nodes.size() - 1, intervals_of_a_part, [&](size_t first, size_t last) {
-    const size_t part = first / intervals_of_a_part;
-    Between between(problem, thinning, part);
+    core::TrajectoryData& mine = made[first / intervals_of_a_part];
+    std::vector<NavState> between;
     for (size_t k = first; k < last; ++k) {
       const Covariance a = core::CovarianceSeries::unpack(smoothed[k].covariance),
                        b = core::CovarianceSeries::unpack(smoothed[k + 1].covariance);
-      for (const NavState& n : between.states(k, smoothed[k].estimate, smoothed[k + 1].estimate.nav)) {
+      states_between(problem, records, k, smoothed[k].estimate, smoothed[k + 1].estimate.nav, between);
+      for (const NavState& n : between) {
         const double s = (n.time - nodes[k].time) / (nodes[k + 1].time - nodes[k].time);
-        append(made[part], n, (1 - s) * a.diagonal() + s * b.diagonal());
+        append(mine, n, (1 - s) * a.diagonal() + s * b.diagonal());
       }
     }
   });
@@ -163,31 +134,37 @@ core::TrajectoryData trajectory_of(const Problem& problem, const std::vector<Smo
   return out;
 }
 
-PoseRecords poses_of(const Problem& problem, const std::vector<Estimate>& estimates, double rate, const std::vector<char>& wanted) {
-  PoseRecords out;
-  const Thinning thinning(problem, rate);
-  std::vector<PoseRecords> made(thinning.parts());
+PoseRecords poses_of(const Problem& problem, const std::vector<Estimate>& estimates, const OutputRecords& records,
+                     const std::vector<char>& wanted) {
+  if (estimates.size() != problem.nodes.size() || wanted.size() + 1 != estimates.size())
+    throw std::logic_error("estimates, intervals and instants do not belong together");
+  std::vector<PoseRecords> made(parts_of(wanted.size()));
   core::in_parallel(wanted.size(), intervals_of_a_part, [&](size_t first, size_t last) {
     PoseRecords& mine = made[first / intervals_of_a_part];
-    Between between(problem, thinning, first / intervals_of_a_part);
+    std::vector<NavState> between;
     for (size_t k = first; k < last; ++k) {
-      if (!wanted[k]) {
-        between.pass(k);
-        continue;
-      }
-      for (const NavState& n : between.states(k, estimates[k], estimates[k + 1].nav)) {
+      if (!wanted[k]) continue;
+      states_between(problem, records, k, estimates[k], estimates[k + 1].nav, between);
+      for (const NavState& n : between) {
         mine.time.push_back(n.time);
         mine.position.push_back(n.position);
         mine.ecef_R_body.push_back(n.ecef_R_body);
       }
     }
   });
-  for (PoseRecords& part : made) {
-    out.time.insert(out.time.end(), part.time.begin(), part.time.end());
-    out.position.insert(out.position.end(), part.position.begin(), part.position.end());
-    out.ecef_R_body.insert(out.ecef_R_body.end(), part.ecef_R_body.begin(), part.ecef_R_body.end());
-    part = {};
-  }
+  size_t size = 0;
+  for (const PoseRecords& part : made) size += part.time.size();
+  PoseRecords out;
+  const auto join = [&](auto column) {
+    (out.*column).reserve(size);
+    for (PoseRecords& part : made) {
+      (out.*column).insert((out.*column).end(), (part.*column).begin(), (part.*column).end());
+      part.*column = {};
+    }
+  };
+  join(&PoseRecords::time);
+  join(&PoseRecords::position);
+  join(&PoseRecords::ecef_R_body);
   return out;
 }
 

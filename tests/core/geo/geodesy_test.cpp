@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
-
 #include <numbers>
 #include <vector>
+
 #include "core/geo/ellipsoid_normal.h"
 
 namespace swath::core {
@@ -88,21 +88,22 @@ TEST(Geodesy, LocalLevelAxesAreTheSlopesOfThePosition) {
 }
 
 TEST(Geodesy, TheNormalWithoutAnglesIsThatOfTheAngles) {
+  constexpr double of_angles = 4e-15, of_sums = 4e-16, of_gravity = 4e-14;  // rounding: of angles up to pi, of unit vectors, of 9.8 m/s^2
   for (const double latitude : {-pi / 2, -0.9, -1e-9, 0.0, 0.3, 1.2, pi / 2})
     for (const double longitude : {-3.1, -1.0, 0.0, 0.7, 3.14})
       for (const double height : {-100.0, 0.0, 3000.0, 20000.0}) {
         const Eigen::Vector3d place = ecef_of({latitude, longitude, height});
         const Geodetic g = geodetic_of(place);
         const EllipsoidNormal n = ellipsoid_normal(place);
-        EXPECT_LT((n.ecef_R_ned() - ecef_R_ned(g.latitude, g.longitude)).norm(), 1e-15);
-        EXPECT_LT((n.up() + n.ecef_R_ned().col(2)).norm(), 1e-16);
+        EXPECT_LT((n.ecef_R_ned() - ecef_R_ned(g.latitude, g.longitude)).norm(), of_angles);
+        EXPECT_LT((n.up() + n.ecef_R_ned().col(2)).norm(), of_sums);
         EXPECT_EQ(n.height, g.height);
-        EXPECT_NEAR(n.gravity(), normal_gravity(g.latitude, g.height), 1e-14);
+        EXPECT_NEAR(n.gravity(), normal_gravity(g.latitude, g.height), of_gravity);
       }
   const EllipsoidNormal pole = ellipsoid_normal({0.0, 0.0, wgs84::b + 5.0});
   EXPECT_EQ(pole.cos_longitude, 1.0);
-  EXPECT_NEAR(pole.sin_latitude, 1.0, 1e-15);
-  EXPECT_NEAR(pole.height, 5.0, 1e-8);
+  EXPECT_NEAR(pole.sin_latitude, 1.0, of_sums);
+  EXPECT_NEAR(pole.height, 5.0, last_place);
 }
 
 TEST(Geodesy, RadiiAtEquatorAndPole) {

@@ -18,6 +18,8 @@ using test::InsProblem;
 
 constexpr double position_off = 0.003, angle_off = 2e-5;  // m, rad by which the nodes miss the truth
 
+constexpr double many_instants = 0.03;  // s between them: more than are worked on in one part
+
 /// Nodes that lie about the truth, each with its own covariance.
 std::vector<SmoothedNode> nodes_of(const InsProblem& made, double velocity_off = 0.003) {
   test::Dice dice(9);
@@ -37,10 +39,11 @@ std::vector<SmoothedNode> nodes_of(const InsProblem& made, double velocity_off =
   return out;
 }
 
-InsProblem::Setup exact_setup() {
+InsProblem::Setup exact_setup(double spacing = 0.25) {
   InsProblem::Setup s;
   s.sensors.imu_step = 0.005;
   s.imu = {};
+  s.spacing = spacing;
   return s;
 }
 
@@ -116,7 +119,7 @@ TEST(InsOutput, SigmasAndCovariancesAreLinearBetweenNodes) {
 }
 
 TEST(InsOutput, RateDecimates) {
-  const InsProblem made(test::motion_of(test::survey_flight(2)), exact_setup());
+  const InsProblem made(test::motion_of(test::survey_flight(2)), exact_setup(many_instants));
   const std::vector<SmoothedNode> nodes = nodes_of(made);
   const core::TrajectoryData all = trajectory_of(*made.problem, nodes, 200.0);
   for (const double rate : {100.0, 50.0, 10.0, 1.0}) {
@@ -132,7 +135,7 @@ TEST(InsOutput, RateDecimates) {
 
 /// What a linearisation takes is the same trajectory, where it is wanted.
 TEST(InsOutput, PosesOfSomeIntervalsAreThoseOfTheTrajectory) {
-  const InsProblem made(test::motion_of(test::survey_flight(2)), exact_setup());
+  const InsProblem made(test::motion_of(test::survey_flight(2)), exact_setup(many_instants));
   const std::vector<SmoothedNode> nodes = nodes_of(made);
   std::vector<Estimate> estimates;
   for (const SmoothedNode& n : nodes) estimates.push_back(n.estimate);
@@ -140,7 +143,7 @@ TEST(InsOutput, PosesOfSomeIntervalsAreThoseOfTheTrajectory) {
     const core::TrajectoryData all = trajectory_of(*made.problem, nodes, rate);
     std::vector<char> wanted(nodes.size() - 1, 0);
     for (size_t k = 0; k < wanted.size(); ++k) wanted[k] = k % 7 < 3;
-    const PoseRecords some = poses_of(*made.problem, estimates, rate, wanted);
+    const PoseRecords some = poses_of(*made.problem, estimates, OutputRecords(*made.problem, rate), wanted);
     size_t i = 0;
     for (size_t k = 0; k < all.size(); ++k) {
       // The record at a node ends the interval before it.

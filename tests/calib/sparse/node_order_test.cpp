@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/node_order.h"
+#include "calib/sparse/node_order.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/node_matrix.h"
+#include "calib/sparse/node_matrix.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib/block/dense_product.h"
+#include "calib/sparse/dense_product.h"
 #include "core/parallel.h"
 
 namespace swath::calib {

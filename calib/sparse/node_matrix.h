@@ -3,7 +3,7 @@
 // inverted on the pattern of its factor, which holds every block between nodes that share an observation or an eliminated point.
 //
 // Sources: multifrontal elimination (Duff and Reid 1983), the sparse part of the inverse (Takahashi et al. 1973), the order and the fronts
-// of calib/block/node_order.h. Unknowns are scaled to a unit diagonal first: a pivot is then the share of an unknown's information that is
+// of calib/sparse/node_order.h. Unknowns are scaled to a unit diagonal first: a pivot is then the share of an unknown's information that is
 // left when those before it are unknown, too. Subtrees and large fronts are worked on by all threads of the run; the result is the same for
 // any number of them.
 #pragma once
@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "calib/block/node_order.h"
+#include "calib/sparse/node_order.h"
 
 namespace swath::calib {
 

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The dense product that most of a factorisation by fronts consists of.
-//
-// Weighed: Eigen's, which is compiled for the least processor that the program runs on and takes about twice the time on those with AVX2;
-// OpenBLAS, whose library for all processors is larger than all else that a package of swath holds. Source of the blocking: Goto and van
-// de Geijn 2008. Products are not fused with sums, and each element is summed in one order: the numbers are the same on any processor.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +11,7 @@ struct MatrixView {
   const double* data;
   Eigen::Index rows, columns, row_step, column_step;
 
-  /// Columns side by side.
+  /// Of a matrix by columns, or a block of one; it must outlive the view.
   template <class Matrix>
   static MatrixView of(const Matrix& m) {
     static_assert(!Matrix::IsRowMajor);
@@ -24,7 +20,7 @@ struct MatrixView {
   MatrixView transposed() const { return {data, columns, rows, column_step, row_step}; }
 };
 
-/// C -= A B. C may share no memory with A and B.
+/// C -= A B. No element of C may be one of A or B.
 void subtract_product(Eigen::Ref<Eigen::MatrixXd> C, const MatrixView& A, const MatrixView& B);
 
 }  // namespace swath::calib
