@@ -120,6 +120,9 @@ std::function<void(const fs::path&)> outside_inputs(const Plan& plan) {
 
 void check_output(const Plan& plan) {
   const fs::path output = fs::absolute(plan.run.output).lexically_normal();
+  std::error_code no_file;
+  if (const fs::file_status there = fs::status(output, no_file); fs::exists(there) && !fs::is_directory(there))
+    throw core::usage_error("the output is a file; products go to a folder", output.string(), "name a folder by --output");
   std::vector<fs::path> products{"report.json", ".swath", ".swath-discarded"};
   for (const PlannedStage& s : plan.stages)
     for (const std::string& name : s.stage->products()) products.emplace_back(name);

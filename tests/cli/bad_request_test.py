@@ -110,6 +110,14 @@ class Systems(Case):
     """Folders that cannot be written."""
     simulated = SMALLEST
 
+    def test_output_that_is_a_file(self):
+        file = self.folder / "file"
+        file.write_text("kept")
+        for command in ("run", "check"):
+            done = swath(command, CONFIG, "--survey", self.survey / "survey.toml", "--output", file, "--quiet")
+            self.assert_error(done, 2, "file: the output is a file; products go to a folder", "hint: name a folder by --output")
+        self.assertEqual(file.read_text(), "kept")
+
     def test_output_below_a_file(self):
         (self.folder / "file").write_text("not a folder")
         done = swath("run", CONFIG, "--survey", self.survey / "survey.toml", "--output", self.folder / "file" / "out", "--quiet")
