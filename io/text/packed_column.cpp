@@ -46,7 +46,7 @@ class Room {
 struct Codec {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> pack{ZSTD_createCCtx(), &ZSTD_freeCCtx};
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> unpack{ZSTD_createDCtx(), &ZSTD_freeDCtx};
-  Room own, planes, packed, steps, rests;
+  Room planes, packed;
 };
 
 Codec& codec() {
@@ -92,11 +92,11 @@ bool has_numbers(size_t width) { return width == 1 || width == 2 || width == 4 |
 /// Compressed into codec().packed; where, and how many bytes.
 std::span<const char> compress(const void* values, size_t n, size_t width, Way way) {
   Codec& c = codec();
-  auto* own = c.own.of<std::uint8_t>(n * width);
-  if (n > 0) std::memcpy(own, values, n * width);
-  if (way == differences) as_numbers(own, width, [n](auto* v) { difference(v, n); });
+  const auto own = std::make_unique_for_overwrite<std::uint8_t[]>(n * width);
+  if (n > 0) std::memcpy(own.get(), values, n * width);
+  if (way == differences) as_numbers(own.get(), width, [n](auto* v) { difference(v, n); });
   auto* planes = c.planes.of<std::uint8_t>(n * width);
-  to_planes(own, n, width, planes);
+  to_planes(own.get(), n, width, planes);
   const size_t bound = ZSTD_compressBound(n * width);
   char* packed = c.packed.of<char>(bound);
   const size_t size = ZSTD_compressCCtx(c.pack.get(), packed, bound, planes, n * width, level);
@@ -228,10 +228,10 @@ bool unpack_coordinates(const char* bytes, size_t size, double* values, size_t n
   if (size < sizeof s) return false;
   std::memcpy(&s, bytes, sizeof s);
   bytes += sizeof s, size -= sizeof s;
-  auto* steps = codec().steps.of<std::int32_t>(n);
-  auto* rests = codec().rests.of<std::int8_t>(n);
-  if (!take_inflated(bytes, size, steps, n, 4) || !take_inflated(bytes, size, rests, n, 1) || size > 0) return false;
-  s.scale > 0.0 ? multiplied(s, steps, rests, n, values) : divided(s, steps, rests, n, values);
+  const auto steps = std::make_unique_for_overwrite<std::int32_t[]>(n);
+  const auto rests = std::make_unique_for_overwrite<std::int8_t[]>(n);
+  if (!take_inflated(bytes, size, steps.get(), n, 4) || !take_inflated(bytes, size, rests.get(), n, 1) || size > 0) return false;
+  s.scale > 0.0 ? multiplied(s, steps.get(), rests.get(), n, values) : divided(s, steps.get(), rests.get(), n, values);
   return true;
 }
 
@@ -264,8 +264,10 @@ void pack(const void* values, size_t n, size_t width, std::string& out) { put(va
 
 void pack_coordinates(const double* values, size_t n, std::string& out) {
   constexpr double foot = 0.3048, survey_foot = 1200.0 / 3937.0;
-  auto* steps = codec().steps.of<std::int32_t>(n);
-  auto* rests = codec().rests.of<std::int8_t>(n);
+  const auto own_steps = std::make_unique_for_overwrite<std::int32_t[]>(n);
+  const auto own_rests = std::make_unique_for_overwrite<std::int8_t[]>(n);
+  std::int32_t* const steps = own_steps.get();
+  std::int8_t* const rests = own_rests.get();
   Steps s;
   s.place = common_place(values, n);
   bool found = false;
