@@ -45,7 +45,9 @@ std::uint64_t held_bytes() {
 #if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
   const Resident now = resident();
   const struct mallinfo2 heap = mallinfo2();
-  return std::min<std::uint64_t>(now.all, now.files + heap.uordblks + heap.hblkhd);
+  // At least what is resident and not free in this heap: other allocators' memory and stacks are in that.
+  const std::uint64_t least = now.all - std::min<std::uint64_t>(now.all, heap.fordblks);
+  return std::min<std::uint64_t>(now.all, std::max<std::uint64_t>(least, now.files + heap.uordblks + heap.hblkhd));
 #else
   return_freed_memory();
   return resident_bytes();
@@ -78,9 +80,14 @@ void fit_memory(double bytes) {
 double MemoryBudget::free() const { return std::max(0.0, left()); }
 
 double MemoryBudget::left() const {
-  // To fetch and clear pages again that were returned would take a tenth of the time.
-  if (bytes_ < plenty) return_freed_memory();
-  return (1.0 - uncounted) * bytes_ - static_cast<double>(bytes_ < plenty ? resident_bytes() : held_bytes());
+  const double most = (1.0 - uncounted) * bytes_;
+  // Pages that were returned must be fetched and cleared again: freed memory is kept where the reserve has room for all of it.
+  if (bytes_ >= plenty) {
+    const std::uint64_t held = held_bytes();
+    if (static_cast<double>(resident_bytes() - std::min(resident_bytes(), held)) <= reserve()) return most - static_cast<double>(held);
+  }
+  return_freed_memory();
+  return most - static_cast<double>(resident_bytes());
 }
 
 double MemoryBudget::reserve() const { return uncounted * bytes_; }

@@ -17,6 +17,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/watched.h"
+#include "simulate/files/earlier_survey.h"
 #include "simulate/simulate.h"
 
 namespace swath::python {
@@ -76,6 +77,7 @@ void write_contours(const std::string& file, const nb::list& lines, const std::s
 
 std::string simulate_survey(const std::string& folder, const std::string& options) {
   const simulate::Options read = simulate::read_options(io::parse_json(options, "swath.simulate"));
+  const simulate::EarlierSurvey earlier(folder);
   std::atomic<bool> stop = false;
   core::Value made;
   run_watched(

@@ -22,7 +22,7 @@ constexpr size_t fewest_beside = 100;         // of them on one side, to show it
 constexpr double by_chance = 1e-6;            // probability of such a run in the whole record
 constexpr double mostly = 0.5;                // share of repeats
 constexpr double goes_on = 0.5;               // of another axis' noise beside the run
-constexpr size_t fewest_standing = 1000;      // records, to call an axis one that stands
+constexpr size_t fewest_standing = 6000;      // records, to call an axis one that stands: half a minute at 200 Hz
 constexpr size_t many_values = 20;            // of an axis whose noise its digits resolve: then the other axes' do, too
 constexpr size_t noise_records = 2 * beside;  // records within the run, for that noise
 

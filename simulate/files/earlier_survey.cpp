@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <string_view>
 
 #include "core/error.h"
@@ -27,10 +28,18 @@ bool is_own(const std::string& name) {
                      [&](std::string_view format) { return name == "survey_" + std::string(format.substr(1)) + ".toml"; });
 }
 
+/// A survey whose truth was taken out of it.
+bool is_simulated(const fs::path& survey) {
+  constexpr std::string_view start = "# Simulated survey";
+  std::string first;
+  std::ifstream in(survey);
+  return std::getline(in, first) && first.starts_with(start);
+}
+
 /// A simulation that was killed has its folder truth/, too, and is made again by the same command.
 void refuse_other_records(const fs::path& folder) {
   std::error_code ec;
-  if (fs::is_directory(folder / "truth", ec)) return;
+  if (fs::is_directory(folder / "truth", ec) || is_simulated(folder / "survey.toml")) return;
   std::vector<std::string> found;
   for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
     if (const std::string name = at->path().filename().string(); is_own(name)) found.push_back(name);
@@ -39,7 +48,7 @@ void refuse_other_records(const fs::path& folder) {
   std::string names;
   for (size_t k = 0; k < std::min(found.size(), files_named); ++k) names += (k > 0 ? ", " : "") + found[k];
   if (found.size() > files_named) names += " and " + std::to_string(found.size() - files_named) + " more";
-  throw core::usage_error("the folder holds " + names + ", which no simulation wrote: they would be overwritten", folder.string(),
+  throw core::usage_error("the folder holds " + names + ", which no simulation wrote: records there could be overwritten", folder.string(),
                           "name a folder that does not exist yet, or move these files");
 }
 

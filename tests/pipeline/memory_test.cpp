@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <vector>
+
 #include "core/error.h"
 
 namespace swath::pipeline {
@@ -15,6 +18,19 @@ TEST(MemoryBudget, WhatIsFreeIsTheBudgetLessWhatTheProcessHolds) {
   EXPECT_LT(free, 2e9 - budget.reserve());
   EXPECT_GT(free, 1e9);
   EXPECT_EQ(MemoryBudget(1e6).free(), 0.0);
+}
+
+TEST(MemoryBudget, FreedMemoryThatIsKeptStaysWithinTheBudget) {
+  if (resident_bytes() == 0) GTEST_SKIP() << "this system does not say what a process holds";
+  constexpr double bytes = 2e9;
+  {
+    // Pieces that no page of its own holds, each second one kept, so that the heap cannot shrink by itself.
+    std::vector<std::unique_ptr<std::vector<char>>> pieces, kept;
+    for (int k = 0; k < 40000; ++k) (k % 100 == 0 ? kept : pieces).push_back(std::make_unique<std::vector<char>>(10000, 'x'));
+    pieces.clear();
+    const double left = MemoryBudget(bytes).left();
+    EXPECT_LE(static_cast<double>(resident_bytes()) + left, bytes) << "what may be taken fits beside what is resident";
+  }
 }
 
 TEST(MemoryBudget, ARefusalNamesTheBudgetThatWorks) {

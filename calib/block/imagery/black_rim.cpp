@@ -4,23 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/printable.h"
+
 namespace swath::calib {
 namespace {
 
 constexpr std::size_t photographs_read = 5;
+constexpr double values_at_a_time = 1e8;
+constexpr int block_of_jpeg = 16;  // pixels, with halved colours: black beside an image is no longer exact in the blocks that hold both
+
+bool is_jpeg(const std::filesystem::path& file) {
+  const std::string ending = core::lower_case(file.extension().string());
+  return ending == ".jpg" || ending == ".jpeg";
+}
+
+/// By bands of rows: photographs of large frames do not fit into memory at once.
+BlackRim rim_of_one(const std::filesystem::path& file) {
+  const io::ImageRaster facts = io::read_image_facts(file);
+  const int rows = std::max(1, static_cast<int>(std::min<double>(facts.rows, values_at_a_time / facts.columns / facts.bands)));
+  BlackRim rim(facts.columns, facts.rows);
+  for (int r = 0; r < facts.rows; r += rows) rim.add(io::read_image_window(file, {0, r, facts.columns, std::min(rows, facts.rows - r)}), r);
+  return rim;
+}
 
 bool is_black(const io::ImageRaster& image, int column, int row) {
   const std::uint16_t* pixel = &image.values[image.at(column, row)];
   return std::all_of(pixel, pixel + std::min(image.bands, 3), [](std::uint16_t v) { return v == 0; });
-}
-
-/// [first, last) of `count` pixels that is left when black ones are taken off both ends; [count, 0) where all are black.
-template <class IsBlack>
-void shown_of(int count, const IsBlack& is_black_at, int& first, int& last) {
-  first = 0, last = count;
-  while (first < count && is_black_at(first)) ++first;
-  if (first == count) last = 0;
-  while (last > first && is_black_at(last - 1)) --last;
 }
 
 void widen(std::vector<int>& first, std::vector<int>& last, const std::vector<int>& other_first, const std::vector<int>& other_last) {
@@ -33,21 +42,22 @@ bool leaves_out(int at, int first, int last, int count, int margin) {
 
 }  // namespace
 
-BlackRim::BlackRim(const io::ImageRaster& image)
-    : left_(static_cast<std::size_t>(image.rows)),
-      right_(left_.size()),
-      top_(static_cast<std::size_t>(image.columns)),
-      bottom_(top_.size()) {
-  for (int r = 0; r < image.rows; ++r) {
-    const auto k = static_cast<std::size_t>(r);
-    shown_of(
-        image.columns, [&](int c) { return is_black(image, c, r); }, left_[k], right_[k]);
-  }
-  for (int c = 0; c < image.columns; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    shown_of(
-        image.rows, [&](int r) { return is_black(image, c, r); }, top_[k], bottom_[k]);
-  }
+BlackRim::BlackRim(int columns, int rows)
+    : left_(static_cast<std::size_t>(rows), columns),
+      right_(static_cast<std::size_t>(rows), 0),
+      top_(static_cast<std::size_t>(columns), rows),
+      bottom_(static_cast<std::size_t>(columns), 0) {}
+
+BlackRim::BlackRim(const io::ImageRaster& image) : BlackRim(image.columns, image.rows) { add(image, 0); }
+
+void BlackRim::add(const io::ImageRaster& band, int first_row) {
+  for (int r = 0; r < band.rows; ++r)
+    for (int c = 0; c < band.columns; ++c) {
+      if (is_black(band, c, r)) continue;
+      const auto row = static_cast<std::size_t>(first_row + r), column = static_cast<std::size_t>(c);
+      left_[row] = std::min(left_[row], c), right_[row] = std::max(right_[row], c + 1);
+      top_[column] = std::min(top_[column], first_row + r), bottom_[column] = std::max(bottom_[column], first_row + r + 1);
+    }
   look_for_any();
 }
 
@@ -68,6 +78,7 @@ void BlackRim::look_for_any() {
 
 bool BlackRim::hides(const Eigen::Vector2d& place, int margin) const {
   if (!any_) return false;
+  margin = std::max(margin, mixed_);
   const int columns = static_cast<int>(top_.size()), rows = static_cast<int>(left_.size());
   const int c = std::clamp(static_cast<int>(std::floor(place.x())), 0, columns - 1),
             r = std::clamp(static_cast<int>(std::floor(place.y())), 0, rows - 1);
@@ -79,9 +90,11 @@ BlackRim rim_of(const std::vector<std::filesystem::path>& photographs) {
   BlackRim rim;
   const std::size_t n = std::min(photographs.size(), photographs_read);
   for (std::size_t k = 0; k < n; ++k) {
-    const BlackRim one(io::read_image_raster(photographs[k * photographs.size() / n]));
+    const std::filesystem::path& file = photographs[k * photographs.size() / n];
+    const BlackRim one = rim_of_one(file);
     if (!one.any()) return {};
     k == 0 ? static_cast<void>(rim = one) : rim.intersect(one);
+    if (is_jpeg(file)) rim.expect_mixed(block_of_jpeg);
   }
   return rim;
 }

@@ -2,6 +2,7 @@
 #include "simulate/files/earlier_survey.h"
 
 #include <chrono>
+#include <fstream>
 
 #include "core/error.h"
 #include "tests/world/support.h"
@@ -43,11 +44,13 @@ TEST(EarlierSurvey, RecordsThatNoSimulationWroteAreRefused) {
   } catch (const core::Error& e) {
     EXPECT_EQ(e.code(), core::Exit::bad_usage);
     EXPECT_EQ(std::string(e.what()),
-              "the folder holds gnss.csv, imu.csv, laser.las, sbet.out, smrmsg.out and 1 more, which no simulation wrote: they would be "
-              "overwritten");
+              "the folder holds gnss.csv, imu.csv, laser.las, sbet.out, smrmsg.out and 1 more, which no simulation wrote: records there "
+              "could be overwritten");
     EXPECT_EQ(e.where(), folder.path().string());
   }
   EXPECT_TRUE(fs::exists(folder / "laser.las"));
+  std::ofstream(folder / "survey.toml") << "# Simulated survey; truth/ holds what is known of it.\n";
+  EXPECT_NO_THROW(EarlierSurvey{folder.path()}) << "its truth was taken out of it";
 }
 
 // A simulation that was killed has not come to its list of options, but has made the folder of the truth.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/block/imagery/undistort.h"
 #include "tests/calib/block/imagery/made_photos.h"
 
@@ -60,6 +62,25 @@ TEST(BlackRim, AnImageWithoutAnyColourIsHidden) {
   io::ImageRaster image = grey();
   blacken(image, 0, 0, 60, 40);
   EXPECT_TRUE(BlackRim(image).hides({30.0, 20.0}, 0));
+}
+
+TEST(BlackRim, BandsOfRowsAreTheImageAndCompressionWidensIt) {
+  io::ImageRaster image = grey();
+  blacken(image, 0, 0, 7, 40);
+  BlackRim whole(image), bands(image.columns, image.rows);
+  for (int first = 0; first < image.rows; first += 15) {
+    io::ImageRaster band = image;
+    band.rows = std::min(15, image.rows - first);
+    band.values = {image.values.begin() + static_cast<std::ptrdiff_t>(image.at(0, first)),
+                   image.values.begin() + static_cast<std::ptrdiff_t>(image.at(0, first + band.rows))};
+    bands.add(band, first);
+  }
+  for (int r = 0; r < image.rows; ++r)
+    for (int c = 0; c < image.columns; ++c) EXPECT_EQ(bands.hides({c + 0.5, r + 0.5}, 0), whole.hides({c + 0.5, r + 0.5}, 0));
+  EXPECT_FALSE(whole.hides({12.5, 20.5}, 2));
+  whole.expect_mixed(16);
+  EXPECT_TRUE(whole.hides({12.5, 20.5}, 2)) << "a block of a JPEG";
+  EXPECT_FALSE(whole.hides({23.5, 20.5}, 2));
 }
 
 TEST(BlackRim, OfAnUndistortedImageItIsWhatTheImageDoesNotShow) {
