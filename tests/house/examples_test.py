@@ -25,7 +25,7 @@ SMALL = ["world.scene=hills", "world.length=300 m", "world.width=200 m", "flight
          "scanner.prf=2 kHz"]
 CAMERA = [*SMALL, "output.laser=false", "output.trajectory=none", "events.file=true", "camera.file=true"]
 SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar", "block": "camera", "colour": "photos", "orthophoto": "photos"}  # config: what it starts from
-LONGEST = 60  # s that a command may take, and a simulation before it begins to write
+LONGEST = 120  # s that a command may take, and a simulation before it begins to write
 
 
 def blocks(text):
