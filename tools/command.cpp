@@ -61,8 +61,8 @@ int Commands::call(int argc, char** argv) {
   try {
     return parse_and_call(argc, argv, words);
   } catch (const core::Error& e) {
-    // Of a word that was typed: other errors have hints of their own.
-    const bool is_typed = std::find(words.begin(), words.end(), e.where()) != words.end();
+    // Of the command line or a word of it: other errors have hints of their own.
+    const bool is_typed = e.where().starts_with("swath ") || std::find(words.begin(), words.end(), e.where()) != words.end();
     const std::string hint = e.code() == core::Exit::bad_usage && (is_typed || e.hint().empty()) ? split_quantity_hint(words) : "";
     if (hint.empty()) throw;
     throw core::Error(e.what(), e.where(), hint, e.code());
