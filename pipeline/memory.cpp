@@ -83,8 +83,8 @@ double MemoryBudget::left() const {
   const double most = (1.0 - uncounted) * bytes_;
   // Pages that were returned must be fetched and cleared again: freed memory is kept where the reserve has room for all of it.
   if (bytes_ >= plenty) {
-    const std::uint64_t held = held_bytes();
-    if (static_cast<double>(resident_bytes() - std::min(resident_bytes(), held)) <= reserve()) return most - static_cast<double>(held);
+    const auto held = static_cast<double>(held_bytes());
+    if (static_cast<double>(resident_bytes()) - held <= reserve()) return most - held;
   }
   return_freed_memory();
   return most - static_cast<double>(resident_bytes());

@@ -24,6 +24,7 @@
 #include "simulate/files/camera_files.h"
 #include "simulate/files/camera_tables.h"
 #include "simulate/files/control_files.h"
+#include "simulate/files/earlier_survey.h"
 #include "simulate/files/events.h"
 #include "simulate/files/gnss_file.h"
 #include "simulate/files/imu_file.h"
@@ -315,7 +316,7 @@ std::vector<io::ControlFile> write_ground_truth(const Scenery& s, const Options&
 
 /// survey.toml for the first format of laser records, and one for each further one.
 void write_surveys(const Scenery& s, const Options& o, const io::Survey& survey, const fs::path& folder) {
-  const std::string comment = "# Simulated survey; truth/ holds what is known of it.\n";
+  const std::string comment = std::string(simulated_mark) + "; truth/ holds what is known of it.\n";
   if (!o.output.laser) return io::write_text_file(folder / "survey.toml", survey_toml(survey, comment));
   const core::GpsTime first = s.start + s.flight->lines().front().start - o.mounting.truth.latency.value;
   for (size_t i = 0; i < o.output.formats.size(); ++i) {

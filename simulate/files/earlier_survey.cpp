@@ -30,10 +30,9 @@ bool is_own(const std::string& name) {
 
 /// A survey whose truth was taken out of it.
 bool is_simulated(const fs::path& survey) {
-  constexpr std::string_view start = "# Simulated survey";
   std::string first;
   std::ifstream in(survey);
-  return std::getline(in, first) && first.starts_with(start);
+  return std::getline(in, first) && first.starts_with(simulated_mark);
 }
 
 /// A simulation that was killed has its folder truth/, too, and is made again by the same command.

@@ -9,6 +9,9 @@
 
 namespace swath::simulate {
 
+/// How survey.toml of a simulation begins.
+inline constexpr const char* simulated_mark = "# Simulated survey";
+
 class EarlierSurvey {
  public:
   /// Looks, before the new simulation, for files under the names that simulations write. Throws core::Error (usage) where they are not of a
