@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calib/adjust/adjust_findings.h"
 #include "calib/adjust/adjust_results.h"
@@ -54,41 +55,39 @@ std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& sca
   return out;
 }
 
-// The globals' information, corrections eliminated.
-MatrixXd eliminated(const MatrixXd& N, Eigen::Index globals) {
-  const Eigen::Index knots = N.rows() - globals;
-  MatrixXd out = N.topLeftCorner(globals, globals);
-  if (knots == 0) return out;
-  const MatrixXd K = N.bottomRightCorner(knots, knots);
-  const VectorXd scale = K.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * K * scale.asDiagonal());
-  const MatrixXd cross = scale.asDiagonal() * N.bottomLeftCorner(knots, globals);
-  out -= cross.transpose() * llt.solve(cross);
-  return 0.5 * (out + out.transpose());
+MatrixXd scaled_inverse(const MatrixXd& N) {
+  const VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * (scale.asDiagonal() * N * scale.asDiagonal()).llt().solve(MatrixXd::Identity(N.rows(), N.cols())) *
+         scale.asDiagonal();
 }
 
 VectorXd sigmas_with(const MatrixXd& information, const VectorXd& prior) {
   MatrixXd N = information;
   N.diagonal() += prior;
-  const VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const MatrixXd inverse = (scale.asDiagonal() * N * scale.asDiagonal()).llt().solve(MatrixXd::Identity(N.rows(), N.cols()));
-  return scale.cwiseProduct(inverse.diagonal().cwiseMax(0.0).cwiseSqrt());
+  return scaled_inverse(N).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 // What the data alone show of the global unknowns, and what they would show if all positions could be shifted together.
 Separation separate(const TieProblem& p, const AdjustRounds& r) {
   Separation out;
   const auto globals = static_cast<Eigen::Index>(p.globals.size());
-  out.information = eliminated(r.data.N, globals);
-  out.formal = r.solution.covariance.diagonal().head(globals).cwiseSqrt();
+  const MatrixXd of_globals = r.solution.of_globals(static_cast<int>(globals));
+  out.information = scaled_inverse(of_globals);
+  out.information.diagonal() -= r.prior->globals;
+  out.formal = of_globals.diagonal().cwiseSqrt();
   const MatrixXd B = p.knots->common_shift();
   if (globals == 0 || B.size() == 0 || B.isZero()) return out;
-  const MatrixXd& Q = r.prior.corrections;
-  const MatrixXd QB = Q * B;
-  const MatrixXd inner = B.transpose() * QB + MatrixXd::Identity(3, 3) / (common_shift * common_shift);
-  MatrixXd N = r.data.N;
-  N.bottomRightCorner(Q.rows(), Q.cols()) -= QB * inner.ldlt().solve(QB.transpose());
-  out.unaided = sigmas_with(eliminated(N, globals), r.prior.globals);
+  // The corrections' information Q becomes Q - Q B (B^T Q B + 1 / s^2)^-1 B^T Q, and the inverse what the matrix inversion lemma says.
+  MatrixXd QB(p.size(), 3);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    VectorXd shift = VectorXd::Zero(p.size());
+    shift.tail(B.rows()) = B.col(k);
+    QB.col(k) = r.prior->corrections.times(shift);
+  }
+  const MatrixXd inner = B.transpose() * QB.bottomRows(B.rows()) + MatrixXd::Identity(3, 3) / (common_shift * common_shift);
+  const MatrixXd moved = r.solution.inverse->solve(QB);
+  const MatrixXd more = inner - QB.transpose() * moved;
+  out.unaided = (of_globals + moved.topRows(globals) * more.ldlt().solve(moved.topRows(globals).transpose())).diagonal().cwiseMax(0.0).cwiseSqrt();
   return out;
 }
 
@@ -96,21 +95,23 @@ Separation separate(const TieProblem& p, const AdjustRounds& r) {
 VectorXd white_sigmas(const TieProblem& p, const AdjustRounds& r) {
   const auto globals = static_cast<Eigen::Index>(p.globals.size());
   if (globals == 0) return {};
-  Normals n{MatrixXd::Zero(globals, globals), VectorXd::Zero(globals)};
+  Normals n(static_cast<int>(globals));
   for (std::uint32_t k = 0; k < r.system().planes(); ++k) r.system().add(k, r.use, 1.0, n, true);
-  return sigmas_with(n.N, r.prior.globals);
+  return sigmas_with(n.N.whole(), r.prior->globals);
 }
 
 void put_estimates(const TieProblem& p, const AdjustRounds& r, const Separation& separation, const HeldEffects& effects,
                    const VectorXd& apriori, const JackknifeOptions& o, Adjustment& out) {
   const auto globals = static_cast<Eigen::Index>(p.globals.size());
   const VectorXd white = white_sigmas(p, r);
-  const MatrixXd held = effects.covariance(0, globals);
+  std::vector<int> numbers(p.globals.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const MatrixXd held = effects.covariance(numbers);
   const double significance = o.significance;
   Jackknife lines, regions;
-  if (globals > 0 && o.lines) lines = jackknife(p, r.system(), r.use, r.normals, r.solution, groups_by_line(*p.ties, r.use));
+  if (globals > 0 && o.lines) lines = jackknife(p, r.system(), r.use, *r.normals, r.solution, groups_by_line(*p.ties, r.use));
   if (globals > 0 && o.blocks > 1)
-    regions = jackknife(p, r.system(), r.use, r.normals, r.solution, groups_by_region(*p.ties, r.use, o.blocks));
+    regions = jackknife(p, r.system(), r.use, *r.normals, r.solution, groups_by_region(*p.ties, r.use, o.blocks));
   for (Eigen::Index i = 0; i < globals; ++i) {
     Estimate& e = out.estimates[p.globals[i]];
     e.estimated = true;
@@ -132,7 +133,7 @@ void put_estimates(const TieProblem& p, const AdjustRounds& r, const Separation&
     e.sigma = e.found_sigma = std::hypot(own, e.held);
     e.determined = std::isfinite(e.apriori) ? 1.0 - std::pow(e.formal / e.apriori, 2) : 1.0;
   }
-  const MatrixXd C = r.solution.covariance.topLeftCorner(globals, globals) + held;
+  const MatrixXd C = r.solution.covariance(numbers) + held;
   const VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
   out.correlation = inverse.asDiagonal() * C * inverse.asDiagonal();
   out.correlation.diagonal().setOnes();
@@ -144,9 +145,10 @@ void keep_covariance(const TieProblem& problem, const AdjustRounds& r, const Hel
   constexpr int n = latency + 1;
   out.formal = out.held = MatrixXd::Zero(n, n);
   out.held_correlation = MatrixXd::Identity(n, n);
+  const MatrixXd formal = r.solution.of_globals(static_cast<int>(globals.size()));
   for (size_t i = 0; i < globals.size(); ++i)
     for (size_t j = 0; j < globals.size(); ++j)
-      out.formal(globals[i], globals[j]) = r.solution.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      out.formal(globals[i], globals[j]) = formal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   for (size_t h = 0; h < held.parameters.size(); ++h) {
     const auto column = static_cast<Eigen::Index>(h);
     const Parameter p = held.parameters[h];

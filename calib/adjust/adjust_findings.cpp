@@ -62,7 +62,7 @@ void find_wide_knots(const CorrectionOptions& o, double spacing, int unknowns, A
                               words("%.1f", o.spacing.value) + " s: all lines together have " + std::to_string(unknowns) +
                               " unknowns, corrections.most allows " + std::to_string(o.most) +
                               "; errors that change faster stay in the points, and sigmas do not show them",
-                          "adjust fewer lines in one run, or raise corrections.most (time grows with its third power)",
+                          "adjust fewer lines in one run, or raise corrections.most (it costs time and memory)",
                           {},
                           false});
 }

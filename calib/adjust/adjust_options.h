@@ -58,7 +58,7 @@ enum class CorrectionPrior {
 struct CorrectionOptions {
   CorrectionForm position = CorrectionForm::spline, attitude = CorrectionForm::spline;
   core::Seconds spacing{1.0};
-  int most = 1500;
+  int most = 120000;
   CorrectionPrior prior = CorrectionPrior::trajectory;
   core::Metres stated_position{0.1};
   core::Radians stated_roll_pitch = core::degrees(0.01), stated_heading = core::degrees(0.02);
@@ -71,7 +71,7 @@ void describe(CorrectionOptions& o, V& v) {
            "Ackermann eq 1");
   v.option("attitude", o.attitude, "Correction of the attitude along each line.");
   v.option("spacing", o.spacing, core::above(0), "Maximum time between two knots of a spline; too wide a spacing makes sigmas too small.");
-  v.option("most", o.most, core::within(12, 6000), "Most unknowns of all lines' corrections: the spacing is widened to keep it.");
+  v.option("most", o.most, core::within(12, 1000000), "Most unknowns of all lines' corrections: the spacing is widened to keep it.");
   v.option("prior", o.prior, "Covariance of the corrections: the trajectory's, or the stated sigmas below.");
   v.option("stated_position", o.stated_position, core::above(0), "Sigma of each component of the position.");
   v.option("stated_roll_pitch", o.stated_roll_pitch, core::above(0), "Sigma of roll and of pitch.");

@@ -17,8 +17,9 @@ void put_counts(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {
   const auto globals = static_cast<Eigen::Index>(p.globals.size());
   out.iterations = r.rounds;
   out.converged = r.converged;
+  const Eigen::VectorXd variance = r.solution.of_globals(static_cast<int>(globals)).diagonal();
   for (Eigen::Index i = 0; i < globals; ++i)
-    out.last_step = std::max(out.last_step, std::abs(r.solution.x[i]) / std::sqrt(std::max(1e-300, r.solution.covariance(i, i))));
+    out.last_step = std::max(out.last_step, std::abs(r.solution.x[i]) / std::sqrt(std::max(1e-300, variance[i])));
   double sum = 0.0, freedom = 0.0;
   for (size_t g = 0; g < r.pass.blocks.size(); ++g) {
     const GroupBlock& b = r.pass.blocks[g];
@@ -39,7 +40,7 @@ void put_counts(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {
     sum += row.f * row.f / (row.sigma * row.sigma);
   }
   // The corrections' prior values are as many observations as there are corrections.
-  if (r.state.correction.size() > 0) sum += r.state.correction.dot(r.prior.corrections * r.state.correction);
+  if (r.state.correction.size() > 0) sum += r.prior->squares();
   out.unknowns = static_cast<std::uint64_t>(p.size()) + 3 * r.state.planes.size();
   freedom -= static_cast<double>(globals) + 3.0 * static_cast<double>(r.state.planes.size());
   out.sigma0 = freedom > 0.0 ? std::sqrt(sum / freedom) : not_known;
@@ -47,14 +48,8 @@ void put_counts(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {
 
 void put_components(const TieProblem& p, const AdjustRounds& r, const core::SensorSigma& noise, double surface_sigma, Adjustment& out) {
   const SigmaFactors& f = r.factors;
-  double squares[2] = {}, count[2] = {}, control = 0.0;
   const CorrectionKnots& knots = *p.knots;
-  for (int i = 0; i < knots.size(); ++i) {
-    const int part = knots.is_position(i) ? 0 : 1;
-    squares[part] += knots.covariance()(i, i);
-    count[part] += 1.0;
-  }
-  const auto rms = [](double sum, double n) { return n > 0.0 ? std::sqrt(std::max(0.0, sum) / n) : 0.0; };
+  double control = 0.0;
   const std::vector<ControlRow> rows = control_rows(r.state.planes, 1.0);
   for (const ControlRow& row : rows) control += row.sigma * row.sigma;
   const auto add = [&](const std::string& name, double stated, const SigmaFactor& s) {
@@ -63,53 +58,47 @@ void put_components(const TieProblem& p, const AdjustRounds& r, const core::Sens
   add("range", noise.range.value, f.range);
   add("angle", std::hypot(noise.scan_angle.value, noise.beam_divergence.value / 4.0), f.angle);
   add("surface", surface_sigma, f.surface);
-  for (const int part : {0, 1}) {
-    if (count[part] == 0.0) continue;
-    const std::array<SigmaFactor, 3>& of = part == 0 ? f.position : f.attitude;
-    const std::string name = part == 0 ? "trajectory position" : "trajectory attitude";
+  for (const bool position : {true, false}) {
+    const auto rms = [&](std::optional<CorrectionScale> scale) { return std::sqrt(knots.mean_square(position, scale)); };
+    const double whole = rms({});
+    if (whole == 0.0) continue;
+    const std::array<SigmaFactor, 3>& of = position ? f.position : f.attitude;
+    const std::string name = position ? "trajectory position" : "trajectory attitude";
     if (!knots.scales_apart()) {
-      add(name, rms(squares[part], count[part]), of[0]);
+      add(name, whole, of[0]);
       continue;
     }
-    const auto share = [&](CorrectionScale scale) {
-      const MatrixXd& m = knots.modes(part == 0, scale);
-      return (m.transpose() * knots.covariance() * m).trace();
-    };
-    const double mean = share(line_mean), drift = share(line_drift);
-    add(name + ", mean of a line", rms(mean, count[part]), of[line_mean]);
-    add(name + ", drift along a line", rms(drift, count[part]), of[line_drift]);
-    add(name + ", within a line", rms(squares[part] - mean - drift, count[part]), of[within_line]);
+    add(name + ", mean of a line", rms(line_mean), of[line_mean]);
+    add(name + ", drift along a line", rms(line_drift), of[line_drift]);
+    add(name + ", within a line", rms(within_line), of[within_line]);
   }
-  if (!rows.empty()) add("control", rms(control, static_cast<double>(rows.size())), f.control);
+  if (!rows.empty()) add("control", std::sqrt(control / static_cast<double>(rows.size())), f.control);
 }
 
 void put_corrections(const TieProblem& p, const AdjustRounds& r, const HeldEffects& held, Adjustment& out) {
   const auto globals = static_cast<Eigen::Index>(p.globals.size());
   const CorrectionKnots& k = *p.knots;
   const TieSet& ties = *p.ties;
-  const MatrixXd apriori = k.covariance(r.factors.of_position(), r.factors.of_attitude());
-  MatrixXd with_held = r.solution.covariance;
-  with_held.bottomRightCorner(k.size(), k.size()) += held.covariance(globals, k.size());
+  const CorrectionKnots::PriorOf apriori = k.prior(r.factors.of_position(), r.factors.of_attitude());
   for (size_t l = 0; l < ties.lines.size(); ++l) {
     LineCorrection c;
     c.line = ties.lines[l].id;
     for (const double t : k.size() > 0 ? k.times(l) : std::vector<double>{}) {
       std::vector<int> numbers;
       const MatrixXd D = k.derivatives(l, t, numbers);
-      const auto variances = [&](const MatrixXd& of, Eigen::Index offset) {
+      const auto sigmas = [&](const MatrixXd& C) {
         std::array<double, 6> s{};
-        MatrixXd C(D.cols(), D.cols());
-        for (Eigen::Index i = 0; i < D.cols(); ++i)
-          for (Eigen::Index j = 0; j < D.cols(); ++j) C(i, j) = of(offset + numbers[i], offset + numbers[j]);
         const MatrixXd V = D * C * D.transpose();
         for (int i = 0; i < 6; ++i) s[i] = std::sqrt(std::max(0.0, V(i, i)));
         return s;
       };
+      std::vector<int> unknowns = numbers;
+      for (int& n : unknowns) n += static_cast<int>(globals);
       const Correction v = k.at(l, t, r.state.correction);
       c.time.push_back(t);
       c.value.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
-      c.sigma.push_back(variances(with_held, globals));
-      c.apriori.push_back(variances(apriori, 0));
+      c.sigma.push_back(sigmas(r.solution.covariance(unknowns) + held.covariance(unknowns)));
+      c.apriori.push_back(sigmas(apriori(numbers)));
       c.response.push_back(Eigen::Matrix<double, 6, latency + 1>::Zero());
       for (size_t h = 0; h < held.parameters.size(); ++h)
         for (Eigen::Index i = 0; i < D.cols(); ++i)
@@ -123,7 +112,7 @@ void put_corrections(const TieProblem& p, const AdjustRounds& r, const HeldEffec
 
 void put_planes(const AdjustRounds& r, Adjustment& out) {
   out.planes = r.state.planes;
-  for (const PlaneRest& rest : r.rests) out.plane_sigma.push_back(plane_covariance(rest, r.solution.covariance).diagonal().cwiseSqrt());
+  for (const PlaneRest& rest : r.rests) out.plane_sigma.push_back(plane_covariance(rest, r.solution.covariance(rest.index)).diagonal().cwiseSqrt());
 }
 
 void put_groups(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {

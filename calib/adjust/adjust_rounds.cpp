@@ -94,23 +94,19 @@ void AdjustRounds::set_roughness() {
 }
 
 void AdjustRounds::sum_up() {
-  data = system_->sum(use, rests);
-  normals = data;
-  add_prior(prior, data, false);
-  add_prior(prior, normals, true);
-  solution = solve(*system_, normals, rests, true);
+  normals.emplace(system_->sum(use, rests));
+  add_prior(*prior, *normals);
+  solution = solve(*system_, *normals, rests, true);
   if (solution.solved) tests = tests_of(*system_, solution, rests, use);
 }
 
 void AdjustRounds::solve_here() {
   pass = linearise(*problem_, state, noise(), scale);
   system_ = std::make_unique<TieSystem>(*problem_, pass.blocks, control_rows(state.planes, factors.control.factor), surface());
-  prior.corrections = problem_->knots->information(factors.of_position(), factors.of_attitude());
-  prior.correction = state.correction;
-  prior.globals = information_;
-  prior.departure = VectorXd::Zero(information_.size());
+  VectorXd departure = VectorXd::Zero(information_.size());
   for (Eigen::Index i = 0; i < information_.size(); ++i)
-    prior.departure[i] = value_of(state.calibration, problem_->globals[i]) - value_of(start_, problem_->globals[i]);
+    departure[i] = value_of(state.calibration, problem_->globals[i]) - value_of(start_, problem_->globals[i]);
+  prior.emplace(*problem_, system_->nodes(), factors.of_position(), factors.of_attitude(), state.correction, information_, departure);
   sum_up();
 }
 
@@ -119,7 +115,7 @@ bool AdjustRounds::round(bool variances) {
   solve_here();
   scale = pass.scale;
   if (!solution.solved) return true;
-  const VectorXd sigma = solution.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const VectorXd sigma = solution.inverse->diagonal().cwiseMax(1e-300).cwiseSqrt();
   bool steady = solution.x.size() == 0 || solution.x.cwiseQuotient(sigma).cwiseAbs().maxCoeff() < steady_step;
   for (size_t i = 0; i < problem_->globals.size(); ++i) {
     const Parameter p = problem_->globals[i];
@@ -131,7 +127,7 @@ bool AdjustRounds::round(bool variances) {
 
   const SigmaFactors old = factors;
   update_white(pass.blocks, use, options_->components, factors);
-  update_correlated(*problem_, *system_, solution, tests, use, prior, state.correction, options_->components, factors);
+  update_correlated(*problem_, *system_, solution, tests, use, *prior, state.correction, options_->components, factors);
   scale *= old.range.factor / factors.range.factor;
   const auto look = [&](const SigmaFactor& now, const SigmaFactor& was) {
     if (std::abs(now.factor / was.factor - 1.0) > steady_factor) steady = false;
@@ -171,7 +167,7 @@ void AdjustRounds::release_contradicted() {
     const Parameter p = problem_->globals[static_cast<size_t>(i)];
     found[i] = value_of(state.calibration, p) - value_of(start_, p);
   }
-  contradiction = contradicted(found, solution.covariance.diagonal().head(n).cwiseSqrt(), apriori_);
+  contradiction = contradicted(found, solution.of_globals(static_cast<int>(n)).diagonal().cwiseSqrt(), apriori_);
   for (Eigen::Index i = 0; i < n; ++i)
     if (contradiction[i] > 0.0) information_[i] = free_[i];
 }

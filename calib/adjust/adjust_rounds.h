@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "calib/adjust/adjust_options.h"
@@ -27,8 +28,8 @@ class AdjustRounds {
   std::vector<double> before;  ///< of each group: mean distance from the planes at the start, planes refitted, m
   TiePass pass;
   std::vector<PlaneRest> rests;
-  Normals data, normals;  ///< without and with what is known beforehand of the global unknowns; both with the corrections' prior
-  TiePrior prior;
+  std::optional<Normals> normals;  ///< with what is known beforehand
+  std::optional<TiePrior> prior;
   TieSolution solution;
   TieTests tests;
   ControlShift shift;

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace swath::calib {
 namespace {
@@ -20,6 +21,14 @@ constexpr double least_attitude = 1e-9;  // rad
 // Independent part added to each unknown's variance so that nearly equal ones can be distinguished by the arithmetic: a thousandth of its
 // sigma.
 constexpr double own_share = 1e-6;
+// Unknowns that may all be correlated with all; and how much wider than asked for their knots may be before lines are chained.
+constexpr int most_together = 1500;
+constexpr double wider = 2.0;
+
+double least_variance(bool position) {
+  const double least = position ? least_position : least_attitude;
+  return least * least;
+}
 
 std::vector<double> grid_of(double first, double last, double spacing) {
   if (last - first < shortest_line) return {0.5 * (first + last)};
@@ -29,18 +38,18 @@ std::vector<double> grid_of(double first, double last, double spacing) {
   return out;
 }
 
+size_t unknowns_at(const std::vector<TieLine>& lines, int splines, double spacing) {
+  size_t n = 0;
+  for (const TieLine& l : lines) n += 3 * static_cast<size_t>(splines) * grid_of(l.first, l.last, spacing).size();
+  return n;
+}
+
 // The stated spacing, or the least wider one that keeps the number of unknowns.
-double spacing_for(const std::vector<TieLine>& lines, const CorrectionOptions& o) {
-  const int splines = (o.position == CorrectionForm::spline) + (o.attitude == CorrectionForm::spline);
-  double spacing = o.spacing.value;
-  const auto unknowns = [&] {
-    size_t n = 0;
-    for (const TieLine& l : lines) n += 3 * splines * grid_of(l.first, l.last, spacing).size();
-    return n;
-  };
+double spacing_for(const std::vector<TieLine>& lines, int splines, double stated, size_t most) {
+  double spacing = stated;
   // Two knots on each line are the least.
-  const size_t most = std::max<size_t>(o.most, 6 * splines * lines.size());
-  while (unknowns() > most) spacing *= 1.1;
+  most = std::max<size_t>(most, 6 * static_cast<size_t>(splines) * lines.size());
+  while (unknowns_at(lines, splines, spacing) > most) spacing *= 1.1;
   return spacing;
 }
 
@@ -98,34 +107,51 @@ ErrorCovariance stated_covariance(const CorrectionOptions& o) {
 CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& o,
                                  const ErrorCovariance& given, bool scales_apart)
     : scales_apart_(scales_apart) {
-  std::vector<double> instants;
-  std::vector<Eigen::Index> first_instant;
-  std::vector<std::vector<double>> grids;
+  const int splines = (o.position == CorrectionForm::spline) + (o.attitude == CorrectionForm::spline);
+  const auto is = [&](CorrectionForm form) { return o.position == form || o.attitude == form; };
+  const double together = spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(std::min(o.most, most_together)));
+  const bool chained = splines > 0 && !is(CorrectionForm::shift) && !is(CorrectionForm::drift) && together > wider * o.spacing.value &&
+                       o.most > most_together;
+  spacing_ = chained ? spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(o.most)) : together;
+  place_lines(lines, latency, o);
+  if (chained) {
+    make_chains(given);
+    return;
+  }
+  make_modes();
+  make_dense(o, given);
+}
+
+void CorrectionKnots::place_lines(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& o) {
   const auto place = [this](Knots& k, CorrectionForm form, const std::vector<double>& grid, bool position) {
     k.time = knots_of(form, grid);
     k.first = size_;
     size_ += 3 * static_cast<int>(k.time.size());
     is_position_.resize(static_cast<size_t>(size_), position);
   };
-  spacing_ = spacing_for(lines, o);
   for (const TieLine& l : lines) {
-    const std::vector<double> grid = grid_of(l.first + latency, l.last + latency, spacing_);
     Line line;
-    place(line.position, o.position, grid, true);
-    place(line.attitude, o.attitude, grid, false);
+    line.grid = grid_of(l.first + latency, l.last + latency, spacing_);
+    place(line.position, o.position, line.grid, true);
+    place(line.attitude, o.attitude, line.grid, false);
     line.told = std::max(line.position.time.size(), line.attitude.time.size()) > 1
                     ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
-                    : std::vector<double>{grid.front(), grid.back()};
+                    : std::vector<double>{line.grid.front(), line.grid.back()};
     lines_.push_back(std::move(line));
-    first_instant.push_back(static_cast<Eigen::Index>(instants.size()));
-    instants.insert(instants.end(), grid.begin(), grid.end());
-    grids.push_back(grid);
   }
-  make_modes();
+}
+
+void CorrectionKnots::make_dense(const CorrectionOptions& o, const ErrorCovariance& given) {
   covariance_ = Eigen::MatrixXd::Zero(size_, size_);
   if (size_ == 0) {
     information_ = covariance_;
     return;
+  }
+  std::vector<double> instants;
+  std::vector<Eigen::Index> first_instant;
+  for (const Line& l : lines_) {
+    first_instant.push_back(static_cast<Eigen::Index>(instants.size()));
+    instants.insert(instants.end(), l.grid.begin(), l.grid.end());
   }
   const Eigen::MatrixXd errors = given(instants);
   // The unknowns are P times the errors at the instants.
@@ -133,17 +159,91 @@ CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double laten
   for (size_t l = 0; l < lines_.size(); ++l)
     for (const int part : {0, 1}) {
       const Knots& knots = part == 0 ? lines_[l].position : lines_[l].attitude;
-      const Eigen::MatrixXd share = projection(part == 0 ? o.position : o.attitude, grids[l]);
+      const Eigen::MatrixXd share = projection(part == 0 ? o.position : o.attitude, lines_[l].grid);
       for (Eigen::Index k = 0; k < share.rows(); ++k)
         for (Eigen::Index i = 0; i < share.cols(); ++i)
           for (int c = 0; c < 3; ++c) P(knots.first + 3 * k + c, 6 * (first_instant[l] + i) + 3 * part + c) = share(k, i);
     }
   covariance_ = P * errors * P.transpose();
-  for (int i = 0; i < size_; ++i) {
-    const double least = is_position(i) ? least_position : least_attitude;
-    covariance_(i, i) += least * least;
-  }
+  for (int i = 0; i < size_; ++i) covariance_(i, i) += least_variance(is_position(i));
   information_ = inverse_of(covariance_);
+}
+
+ChainPlaces CorrectionKnots::chain_places(const Line& line, bool trend) {
+  ChainPlaces out;
+  const size_t l = static_cast<size_t>(&line - lines_.data());
+  for (size_t k = 0; k < line.grid.size(); ++k) {
+    std::vector<int> numbers;
+    for (const Knots* part : {&line.position, &line.attitude})
+      for (int c = 0; c < 3 && !part->time.empty(); ++c) {
+        numbers.push_back(part->first + 3 * static_cast<int>(k) + c);
+        knot_of_[static_cast<size_t>(numbers.back())] = {l, k, numbers.size() - 1};
+      }
+    out.knot.push_back(std::move(numbers));
+  }
+  for (size_t i = 0; trend && i < 2 * out.knot.front().size(); ++i) out.trend.push_back(size_ + trends_++);
+  return out;
+}
+
+// The lines' trends are correlated as their errors at a quarter and three quarters of each line are.
+void CorrectionKnots::make_chains(const ErrorCovariance& given) {
+  std::vector<bool> is_position;
+  std::vector<Eigen::Index> rows;  // of the errors' six
+  for (int c = 0; c < 6; ++c)
+    if (!(c < 3 ? lines_.front().position : lines_.front().attitude).time.empty()) {
+      rows.push_back(c);
+      is_position.push_back(c < 3);
+    }
+  const auto q = static_cast<Eigen::Index>(rows.size());
+  const auto some = [&](const std::vector<double>& times) {
+    std::vector<Eigen::Index> wanted;
+    for (size_t k = 0; k < times.size(); ++k)
+      for (const Eigen::Index r : rows) wanted.push_back(6 * static_cast<Eigen::Index>(k) + r);
+    Eigen::MatrixXd C = given(times)(wanted, wanted);
+    for (Eigen::Index i = 0; i < C.rows(); ++i) C(i, i) += least_variance(is_position[static_cast<size_t>(i % q)]);
+    return C;
+  };
+  std::vector<LineChain> chains;
+  std::vector<ChainPlaces> places;
+  std::vector<double> quarters;
+  knot_of_.resize(static_cast<size_t>(size_));
+  for (const Line& l : lines_) {
+    chains.push_back(chain_of(some(l.grid), q));
+    places.push_back(chain_places(l, !chains.back().place.empty()));
+    if (places.back().trend.empty()) continue;
+    const double length = l.grid.back() - l.grid.front();
+    quarters.insert(quarters.end(), {l.grid.front() + 0.25 * length, l.grid.front() + 0.75 * length});
+  }
+  Eigen::MatrixXd trends(0, 0);
+  if (!quarters.empty()) {
+    trends = some(quarters);
+    const auto n = static_cast<Eigen::Index>(quarters.size()) / 2;
+    Eigen::MatrixXd T(2 * q, 2 * q), back = Eigen::MatrixXd::Zero(trends.rows(), trends.cols());
+    T << 0.5 * Eigen::MatrixXd::Identity(q, q), 0.5 * Eigen::MatrixXd::Identity(q, q), -Eigen::MatrixXd::Identity(q, q),
+        Eigen::MatrixXd::Identity(q, q);
+    for (Eigen::Index l = 0; l < n; ++l) {
+      const Eigen::MatrixXd own = T * trends.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) * T.transpose();
+      back.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) = root_of(own).inverse() * T;
+    }
+    trends = (back * trends * back.transpose()).eval();
+  }
+  chains_.emplace(std::move(chains), std::move(places), trends, is_position);
+}
+
+std::vector<int> CorrectionKnots::nodes(int globals) const {
+  std::vector<int> out(static_cast<size_t>(globals + size()), 0);
+  if (!chains_) return out;
+  int next = globals > 0 ? 1 : 0;
+  const auto at = [&](int u) -> int& { return out[static_cast<size_t>(globals + u)]; };
+  std::vector<int> first;  // node of each line's first knot
+  for (const Line& l : lines_) {
+    first.push_back(next);
+    next += static_cast<int>(l.grid.size());
+  }
+  for (int u = 0; u < size_; ++u) at(u) = first[knot_of_[static_cast<size_t>(u)].line] + static_cast<int>(knot_of_[static_cast<size_t>(u)].knot);
+  const int components = static_cast<int>(chains_->components());
+  for (int t = 0; t < trends_; ++t) at(size_ + t) = next + t / (2 * components);
+  return out;
 }
 
 CorrectionKnots::Weights CorrectionKnots::weights(const Knots& k, double t) {
@@ -232,10 +332,50 @@ Eigen::MatrixXd CorrectionKnots::information(const ScaleFactors& position, const
   return scaled(information_, {inverse(position), inverse(attitude)});
 }
 
+void CorrectionKnots::add_information(const ScaleFactors& position, const ScaleFactors& attitude, int first, TieMatrix& into) const {
+  if (chains_) return chains_->add_information({position, attitude}, first, into);
+  std::vector<int> all(static_cast<size_t>(size_));
+  std::iota(all.begin(), all.end(), first);
+  into.add(all, information(position, attitude));
+}
+
+CorrectionKnots::PriorOf CorrectionKnots::prior(const ScaleFactors& position, const ScaleFactors& attitude) const {
+  if (!chains_) return [C = covariance(position, attitude)](const std::vector<int>& numbers) -> Eigen::MatrixXd { return C(numbers, numbers); };
+  return [this, factors = CorrectionChains::Factors{position, attitude}](const std::vector<int>& numbers) {
+    Eigen::MatrixXd C(numbers.size(), numbers.size());
+    for (size_t i = 0; i < numbers.size(); ++i)
+      for (size_t j = 0; j < numbers.size(); ++j) {
+        const KnotOf &a = knot_of_[static_cast<size_t>(numbers[i])], &b = knot_of_[static_cast<size_t>(numbers[j])];
+        C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            chains_->covariance(factors, a.line, {a.knot, b.knot}, {a.component, b.component});
+      }
+    return C;
+  };
+}
+
+double CorrectionKnots::mean_square(bool position, std::optional<CorrectionScale> scale) const {
+  const auto n = std::count(is_position_.begin(), is_position_.end(), position);
+  if (n == 0) return 0.0;
+  const auto over = [n](double sum) { return std::max(0.0, sum) / static_cast<double>(n); };
+  if (chains_) {
+    if (scale) return over(chains_->squares(position, *scale));
+    return over(chains_->squares(position, line_mean) + chains_->squares(position, line_drift) + chains_->squares(position, within_line));
+  }
+  const auto share = [&](CorrectionScale s) { return (modes(position, s).transpose() * covariance_ * modes(position, s)).trace(); };
+  if (scale && *scale != within_line) return over(share(*scale));
+  double all = 0.0;
+  for (int i = 0; i < size_; ++i)
+    if (is_position(i) == position) all += covariance_(i, i);
+  return over(scale ? all - share(line_mean) - share(line_drift) : all);
+}
+
 Eigen::MatrixXd CorrectionKnots::common_shift() const {
-  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size_, 3);
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size(), 3);
   for (const Line& l : lines_)
     for (int k = 0; k < static_cast<int>(l.position.time.size()); ++k) B.block<3, 3>(l.position.first + 3 * k, 0).setIdentity();
+  // A trend's first three are the means of the position.
+  if (chains_ && !lines_.front().position.time.empty())
+    for (int t = 0, of_line = 2 * static_cast<int>(chains_->components()); t < trends_; t += of_line) B.block<3, 3>(size_ + t, 0).setIdentity();
   return B;
 }
 

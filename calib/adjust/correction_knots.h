@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "calib/adjust/adjust_options.h"
+#include "calib/adjust/correction_chain.h"
 #include "calib/ties/tie_set.h"
 
 namespace swath::calib {
@@ -20,13 +22,12 @@ ErrorCovariance stated_covariance(const CorrectionOptions& options);
 /// North, east, down (m), roll, pitch, heading (rad).
 using Correction = Eigen::Matrix<double, 6, 1>;
 
-/// The time scales of a line's corrections: their mean, their drift along the line, and what is left within it.
-enum CorrectionScale { line_mean = 0, line_drift = 1, within_line = 2 };
-/// Factors on the prior sigmas of the corrections of one part (position or attitude), by CorrectionScale.
-using ScaleFactors = std::array<double, 3>;
-
 /// The unknowns of all lines in one vector: line by line the position's knots (north, east, down each), then the attitude's (roll, pitch,
-/// heading each).
+/// heading each); after all of them, where the lines are chained, the lines' trends, which no return sees.
+///
+/// Few unknowns have the covariance as given, all with all. Where knots as asked for are far more than that allows, all parts are splines
+/// and each line's knots are a Markov chain about its trend (calib/adjust/correction_chain.h): only the trends are correlated from line to
+/// line.
 class CorrectionKnots {
  public:
   /// `latency` is added to the lines' times. The prior of shifts and drifts is that of the least-squares fit of such a curve to errors at
@@ -35,7 +36,11 @@ class CorrectionKnots {
   CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& options, const ErrorCovariance& covariance,
                   bool scales_apart = false);
 
-  int size() const { return size_; }
+  /// Corrections and trends.
+  int size() const { return size_ + trends_; }
+  bool is_chained() const { return chains_.has_value(); }
+  /// The node of each unknown, `globals` others counted before them: one node for all, or one per knot and trend.
+  std::vector<int> nodes(int globals) const;
   /// Time between knots, s: as stated, or wider to keep options.most.
   double spacing() const { return spacing_; }
   /// Which three unknowns act at an instant, and by how much; up to two threes each.
@@ -55,15 +60,24 @@ class CorrectionKnots {
   const std::vector<double>& times(size_t line) const { return lines_[line].told; }
   bool is_position(int unknown) const { return is_position_[static_cast<size_t>(unknown)]; }
 
-  const Eigen::MatrixXd& covariance() const { return covariance_; }    ///< as given
-  const Eigen::MatrixXd& information() const { return information_; }  ///< its inverse
+  /// Not chained: the covariance as given, and its inverse.
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+  const Eigen::MatrixXd& information() const { return information_; }
   /// Both with sigmas of position and attitude multiplied by factors.
   Eigen::MatrixXd information(const ScaleFactors& position, const ScaleFactors& attitude) const;
   Eigen::MatrixXd covariance(const ScaleFactors& position, const ScaleFactors& attitude) const;
+  /// What is known beforehand, added to a matrix with `first` others before it.
+  void add_information(const ScaleFactors& position, const ScaleFactors& attitude, int first, TieMatrix& into) const;
+  /// Covariance of some unknowns of derivatives(), of one line and instant; the factors as in information().
+  using PriorOf = std::function<Eigen::MatrixXd(const std::vector<int>&)>;
+  PriorOf prior(const ScaleFactors& position, const ScaleFactors& attitude) const;
+  /// Mean square over a part's unknowns of one scale of the prior (all: of the whole), m^2 or rad^2; 0 where there are none.
+  double mean_square(bool position, std::optional<CorrectionScale> scale) const;
   bool scales_apart() const { return scales_apart_; }
-  /// What the unknowns of a part hold of a scale: orthonormal columns, each of one line and component; line_mean and line_drift alone. A
-  /// unit of such a column is the size of the line's knots together.
+  /// Not chained: what the unknowns of a part hold of a scale: orthonormal columns, each of one line and component; line_mean and
+  /// line_drift alone. A unit of such a column is the size of the line's knots together.
   const Eigen::MatrixXd& modes(bool position, CorrectionScale scale) const { return modes_[position ? 0 : 1][scale]; }
+  const CorrectionChains& chains() const { return *chains_; }
   /// Columns: what one metre north, east, down common to all lines is in the unknowns.
   Eigen::MatrixXd common_shift() const;
 
@@ -74,20 +88,29 @@ class CorrectionKnots {
   };
   struct Line {
     Knots position, attitude;
-    std::vector<double> told;
+    std::vector<double> told, grid;  // the grid: instants of a spline's knots
   };
   static Weights weights(const Knots& knots, double t);
+  void place_lines(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& options);
+  void make_dense(const CorrectionOptions& options, const ErrorCovariance& covariance);
+  void make_chains(const ErrorCovariance& covariance);
+  ChainPlaces chain_places(const Line& line, bool trend);
   void make_modes();
   // F A F, F = the factors' matrix: `factor` by scale for each part.
   Eigen::MatrixXd scaled(const Eigen::MatrixXd& A, const std::array<ScaleFactors, 2>& factor) const;
 
   std::vector<Line> lines_;
   std::vector<bool> is_position_;
-  int size_ = 0;
+  int size_ = 0, trends_ = 0;  // corrections; unknowns of trends after them
   double spacing_ = 0.0;
   bool scales_apart_ = false;
   Eigen::MatrixXd covariance_, information_;
   std::array<std::array<Eigen::MatrixXd, 2>, 2> modes_;  // by part, by scale
+  std::optional<CorrectionChains> chains_;
+  struct KnotOf {
+    size_t line = 0, knot = 0, component = 0;
+  };
+  std::vector<KnotOf> knot_of_;  // of each correction; chained alone
 };
 
 }  // namespace swath::calib

@@ -13,8 +13,8 @@ double correlation_of(const core::SensorSigma& sensor, Parameter a, Parameter b)
   return sensor.correlation.size() == n * n ? sensor.correlation[static_cast<size_t>(a) * n + static_cast<size_t>(b)] : 0.0;
 }
 
-Eigen::MatrixXd HeldEffects::covariance(Eigen::Index first, Eigen::Index n) const {
-  const Eigen::MatrixXd rows = effect.middleRows(first, n);
+Eigen::MatrixXd HeldEffects::covariance(const std::vector<int>& unknowns) const {
+  const Eigen::MatrixXd rows = effect(unknowns, Eigen::all);
   return rows * correlation * rows.transpose();
 }
 
@@ -35,7 +35,7 @@ HeldEffects effects_of_held(const TieProblem& problem, const AdjustRounds& r, co
     const TieSystem system(problem, pass.blocks, r.system().control(), r.surface());
     std::vector<PlaneRest> rests;
     Normals n = system.sum(r.use, rests);
-    add_prior(r.prior, n);
+    add_prior(*r.prior, n);
     const TieSolution moved = solve(system, n, rests, false);
     if (!moved.solved) continue;
     columns.push_back(moved.x - r.solution.x);

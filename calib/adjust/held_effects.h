@@ -17,8 +17,8 @@ struct HeldEffects {
   Eigen::MatrixXd effect;             ///< unknowns (calibration values, corrections) x parameters
   Eigen::MatrixXd correlation;        ///< between the parameters
 
-  /// Covariance of the unknowns' first `n` rows from `first` on by what is held.
-  Eigen::MatrixXd covariance(Eigen::Index first, Eigen::Index n) const;
+  /// Covariance of some unknowns by what is held.
+  Eigen::MatrixXd covariance(const std::vector<int>& unknowns) const;
 };
 
 /// `rounds` after run(). `sensor`: sigmas of the held values and their correlations. A value that is the same turn as an estimated one is

@@ -5,7 +5,6 @@
 // true.
 #include "calib/adjust/jackknife.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -23,8 +22,7 @@ Jackknife jackknife(const TieProblem& problem, const TieSystem& system, const Ti
   Jackknife j;
   j.sigma = j.ratio = j.freedom = VectorXd::Zero(globals);
   VectorXd squares = VectorXd::Zero(globals), expected = squares, expected_squares = squares;
-  const VectorXd scale = full.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const VectorXd variance = solution.covariance.diagonal().head(globals);
+  const VectorXd variance = solution.of_globals(system.globals()).diagonal();
   for (const std::vector<size_t>& gone : out) {
     if (gone.empty()) continue;
     TieSelection without = use;
@@ -38,16 +36,16 @@ Jackknife jackknife(const TieProblem& problem, const TieSystem& system, const Ti
       system.add(k, use, -1.0, n);
       system.add(k, without, 1.0, n);
     }
-    const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * n.N * scale.asDiagonal());
-    if (llt.info() != Eigen::Success) continue;
-    MatrixXd right(n.N.rows(), globals + 1);
+    const TieInverse inverse(n.N);
+    if (!inverse.is_sound()) continue;
+    MatrixXd right(n.b.size(), globals + 1);
     right.leftCols(globals).setIdentity();
-    right.col(globals) = scale.asDiagonal() * n.b;
-    const MatrixXd left = llt.solve(right);
+    right.col(globals) = n.b;
+    const MatrixXd left = inverse.solve(right);
     ++j.replicates;
     for (Eigen::Index i = 0; i < globals; ++i) {
-      const double d = -scale[i] * left(i, globals) - solution.x[i];
-      const double v = std::max(0.0, scale[i] * scale[i] * left(i, i) - variance[i]);
+      const double d = -left(i, globals) - solution.x[i];
+      const double v = std::max(0.0, left(i, i) - variance[i]);
       squares[i] += d * d;
       expected[i] += v;
       expected_squares[i] += v * v;

@@ -57,6 +57,7 @@ TieTests tests_of(const TieSystem& system, const TieSolution& s, const std::vect
   out.control.resize(use.control.size());
   for (std::uint32_t k = 0; k < system.planes(); ++k) {
     const auto [first, last] = system.groups_of(k);
+    const MatrixXd of_rest = s.covariance(rests[k].index);
     for (size_t g = first; g < last; ++g) {
       const GroupBlock& b = system.block(g);
       const auto at = static_cast<Eigen::Index>(b.index.size());
@@ -65,14 +66,14 @@ TieTests tests_of(const TieSystem& system, const TieSolution& s, const std::vect
       const double weight = b.N(at, at);
       const double sum = -(b.b[at] + b.N.col(at).dot(steps_of(b.index, s, k)));
       const PlaneRow row(-b.N.col(at) / weight, b.index, rests[k]);
-      out.group[g] = test_of(sum, weight, row.variance(s.covariance), use.group[g]);
+      out.group[g] = test_of(sum, weight, row.variance(of_rest), use.group[g]);
     }
     const auto [first_row, last_row] = system.control_of(k);
     for (size_t c = first_row; c < last_row; ++c) {
       const ControlRow& r = system.control()[c];
       const double weight = 1.0 / (r.sigma * r.sigma);
       const PlaneRow row(VectorXd(r.by), {}, rests[k]);
-      out.control[c] = test_of(weight * (r.f + r.by.dot(s.d[k])), weight, row.variance(s.covariance), use.control[c]);
+      out.control[c] = test_of(weight * (r.f + r.by.dot(s.d[k])), weight, row.variance(of_rest), use.control[c]);
     }
   }
   return out;
@@ -125,19 +126,21 @@ ControlShift control_shift(const TieSystem& system, const std::vector<TiePlane>&
   const std::vector<ControlRow>& rows = system.control();
   const auto n = static_cast<Eigen::Index>(rows.size());
   if (n == 0) return out;
-  std::vector<PlaneRow> predicted;
   VectorXd misfit(n);
-  MatrixXd normals(n, 3), C(n, n);
+  MatrixXd normals(n, 3), predicted = MatrixXd::Zero(s.x.size(), n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ControlRow& r = rows[i];
-    predicted.emplace_back(VectorXd(r.by), std::vector<int>{}, rests[r.plane]);
+    predicted(rests[r.plane].index, i) = PlaneRow(VectorXd(r.by), std::vector<int>{}, rests[r.plane]).value;
     misfit[i] = r.f + r.by.dot(s.d[r.plane]);
     normals.row(i) = planes[r.plane].normal.transpose();
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      const double own = rows[j].plane == r.plane ? rows[j].by.dot(rests[r.plane].inverse * r.by) : 0.0;
-      C(i, j) = C(j, i) = own + predicted[i].covariance(predicted[j], s.covariance) + (i == j ? r.sigma * r.sigma : 0.0);
-    }
   }
+  MatrixXd C = predicted.transpose() * s.inverse->solve(predicted);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      if (rows[j].plane == rows[i].plane) C(i, j) += rows[j].by.dot(rests[rows[i].plane].inverse * rows[i].by);
+      if (i == j) C(i, i) += rows[i].sigma * rows[i].sigma;
+      C(j, i) = C(i, j);
+    }
   const Eigen::LDLT<MatrixXd> weight(C);
   const Eigen::Matrix3d N = normals.transpose() * weight.solve(normals);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(N);

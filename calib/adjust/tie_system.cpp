@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numeric>
+#include <stdexcept>
 
 namespace swath::calib {
 namespace {
@@ -45,7 +47,12 @@ void with_surface(GroupBlock& g, double surface) {
 }
 
 TieSystem::TieSystem(const TieProblem& problem, const std::vector<GroupBlock>& blocks, std::vector<ControlRow> control, double surface)
-    : problem_(&problem), bare_(&blocks), blocks_(blocks), control_(std::move(control)), surface_(surface) {
+    : problem_(&problem),
+      bare_(&blocks),
+      blocks_(blocks),
+      control_(std::move(control)),
+      nodes_(std::make_shared<UnknownNodes>(problem.knots->nodes(static_cast<int>(problem.globals.size())))),
+      surface_(surface) {
   for (GroupBlock& b : blocks_) with_surface(b, surface);
   const std::vector<TieGroup>& groups = problem.ties->groups;
   size_t g = 0, c = 0;
@@ -66,7 +73,7 @@ PlaneRest TieSystem::add(std::uint32_t plane, const TieSelection& use, double si
   for (int i = 0; i < globals; ++i) rest.index.push_back(i);
   if (!white)
     for (size_t g = first; g < last; ++g)
-      if (use.group[g]) rest.index.insert(rest.index.end(), blocks_[g].index.begin() + globals, blocks_[g].index.end());
+      rest.index.insert(rest.index.end(), blocks_[g].index.begin() + globals, blocks_[g].index.end());
   std::sort(rest.index.begin(), rest.index.end());
   rest.index.erase(std::unique(rest.index.begin(), rest.index.end()), rest.index.end());
 
@@ -107,98 +114,73 @@ PlaneRest TieSystem::add(std::uint32_t plane, const TieSelection& use, double si
   const MatrixXd gain = rest.N_xp * rest.inverse;
   N.topLeftCorner(m, m).noalias() -= gain * rest.N_xp.transpose();
   b.head(m) -= gain * rest.b;
-  for (Eigen::Index j = 0; j < m; ++j) {
-    into.b[rest.index[j]] += sign * b[j];
-    for (Eigen::Index i = 0; i < m; ++i) into.N(rest.index[i], rest.index[j]) += sign * N(i, j);
-  }
+  for (Eigen::Index j = 0; j < m; ++j) into.b[rest.index[static_cast<size_t>(j)]] += sign * b[j];
+  into.N.add(rest.index, N.topLeftCorner(m, m), sign);
   return rest;
 }
 
 Normals TieSystem::sum(const TieSelection& use, std::vector<PlaneRest>& rests) const {
-  const int n = problem_->size();
-  Normals out{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  Normals out(nodes_);
   rests.clear();
   for (std::uint32_t k = 0; k < planes(); ++k) rests.push_back(add(k, use, 1.0, out));
   return out;
 }
 
-void add_prior(const TiePrior& prior, Normals& n, bool of_globals) {
-  const Eigen::Index globals = prior.globals.size(), knots = prior.correction.size();
-  n.N.bottomRightCorner(knots, knots) += prior.corrections;
-  n.b.tail(knots) += prior.corrections * prior.correction;
-  if (!of_globals) return;
-  n.N.diagonal().head(globals) += prior.globals;
-  n.b.head(globals) += prior.globals.cwiseProduct(prior.departure);
+TiePrior::TiePrior(const TieProblem& problem, std::shared_ptr<const UnknownNodes> nodes, const ScaleFactors& position,
+                   const ScaleFactors& attitude, const VectorXd& correction, VectorXd of_globals, VectorXd of_departure)
+    : corrections(std::move(nodes)),
+      present(VectorXd::Zero(problem.size())),
+      globals(std::move(of_globals)),
+      departure(std::move(of_departure)) {
+  present.tail(correction.size()) = correction;
+  if (correction.size() > 0)
+    problem.knots->add_information(position, attitude, static_cast<int>(problem.globals.size()), corrections);
+}
+
+void add_prior(const TiePrior& prior, Normals& n) {
+  n.N.add(prior.corrections);
+  n.b += prior.corrections.times(prior.present);
+  for (Eigen::Index i = 0; i < prior.globals.size(); ++i) n.N.add({static_cast<int>(i)}, MatrixXd::Constant(1, 1, prior.globals[i]));
+  n.b.head(prior.globals.size()) += prior.globals.cwiseProduct(prior.departure);
+}
+
+MatrixXd TieSolution::of_globals(int globals) const {
+  std::vector<int> numbers(static_cast<size_t>(globals));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return covariance(numbers);
 }
 
 TieSolution solve(const TieSystem& system, const Normals& n, const std::vector<PlaneRest>& rests, bool covariance) {
   TieSolution out;
-  const Eigen::Index size = n.N.rows();
-  // Scaled to ones on the diagonal: the unknowns are of different units.
-  const VectorXd scale = n.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * n.N * scale.asDiagonal());
   out.d.assign(system.planes(), Vector3d::Zero());
-  out.x = VectorXd::Zero(size);
-  if (llt.info() != Eigen::Success) return out;
+  out.x = VectorXd::Zero(n.b.size());
+  auto inverse = std::make_shared<TieInverse>(n.N);
+  if (!inverse->is_sound()) return out;
+  out.x = -inverse->solve(n.b);
+  if (!out.x.allFinite()) return out;
   out.solved = true;
-  out.x = -(scale.asDiagonal() * llt.solve(scale.asDiagonal() * n.b));
-  if (covariance) {
-    out.covariance = llt.solve(MatrixXd::Identity(size, size));
-    out.covariance = scale.asDiagonal() * out.covariance * scale.asDiagonal();
-  }
-  for (size_t k = 0; k < rests.size(); ++k) {
-    VectorXd x(static_cast<Eigen::Index>(rests[k].index.size()));
-    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = out.x[rests[k].index[i]];
-    out.d[k] = -rests[k].inverse * (rests[k].b + rests[k].N_xp.transpose() * x);
-  }
+  if (covariance) inverse->invert();
+  out.inverse = std::move(inverse);
+  for (size_t k = 0; k < rests.size(); ++k) out.d[k] = -rests[k].inverse * (rests[k].b + rests[k].N_xp.transpose() * out.x(rests[k].index));
   return out;
 }
 
-namespace {
-
-MatrixXd part_of(const MatrixXd& covariance, const std::vector<int>& index) {
-  const auto m = static_cast<Eigen::Index>(index.size());
-  MatrixXd out(m, m);
-  for (Eigen::Index j = 0; j < m; ++j)
-    for (Eigen::Index i = 0; i < m; ++i) out(i, j) = covariance(index[i], index[j]);
-  return out;
-}
-
-}  // namespace
-
-Eigen::Matrix3d plane_covariance(const PlaneRest& r, const MatrixXd& covariance) {
+Eigen::Matrix3d plane_covariance(const PlaneRest& r, const MatrixXd& of_rest) {
   const MatrixXd gain = r.inverse * r.N_xp.transpose();
-  return r.inverse + gain * part_of(covariance, r.index) * gain.transpose();
+  return r.inverse + gain * of_rest * gain.transpose();
 }
 
 PlaneRow::PlaneRow(const VectorXd& h, const std::vector<int>& of, const PlaneRest& rest) {
   const Vector3d own = h.tail<3>();
   const Vector3d p = rest.inverse * own;
-  index = rest.index;
   // Over the unknowns: h_x - N_xp P^-1 h_p; what is left of the plane is its own.
-  const VectorXd g = -rest.N_xp * p;
-  value.assign(g.data(), g.data() + g.size());
+  value = -rest.N_xp * p;
   own_variance = own.dot(p);
   for (size_t i = 0; i < of.size(); ++i) {
-    const auto end = index.begin() + static_cast<std::ptrdiff_t>(rest.index.size());
-    const auto found = std::lower_bound(index.begin(), end, of[i]);
-    if (found != end && *found == of[i]) {
-      value[static_cast<size_t>(found - index.begin())] += h[i];
-    } else {
-      index.push_back(of[i]);
-      value.push_back(h[i]);
-    }
+    const auto found = std::lower_bound(rest.index.begin(), rest.index.end(), of[i]);
+    if (found == rest.index.end() || *found != of[i]) throw std::logic_error("an unknown that the plane does not touch");
+    value[found - rest.index.begin()] += h[static_cast<Eigen::Index>(i)];
   }
-}
-
-double PlaneRow::covariance(const PlaneRow& other, const MatrixXd& of_unknowns) const {
-  double sum = 0.0;
-  for (size_t j = 0; j < other.index.size(); ++j) {
-    double s = 0.0;
-    for (size_t i = 0; i < index.size(); ++i) s += of_unknowns(index[i], other.index[j]) * value[i];
-    sum += s * other.value[j];
-  }
-  return sum;
 }
 
 }  // namespace swath::calib

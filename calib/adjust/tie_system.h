@@ -2,10 +2,11 @@
 // The normal equations of all groups put together: planes eliminated, priors added, solved, with covariances.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "calib/adjust/tie_matrix.h"
 #include "calib/adjust/tie_normals.h"
 
 namespace swath::calib {
@@ -27,7 +28,7 @@ struct TieSelection {
 
 /// What a plane leaves behind when it is eliminated.
 struct PlaneRest {
-  std::vector<int> index;                             ///< numbers of the unknowns that its groups touch
+  std::vector<int> index;                             ///< numbers of the unknowns that its groups touch, those left out too; rising
   Eigen::MatrixXd N_xp;                               ///< their normal equations with d0, d1, d2
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< of the plane's own 3 x 3
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -36,9 +37,12 @@ struct PlaneRest {
 /// A group's block once the group's own departure from the plane (sigma `surface`) is eliminated; `surface` 0: there is none.
 void with_surface(GroupBlock& block, double surface);
 
-/// N x = -b, x = (global unknowns, corrections).
+/// N x = -b, x = (global unknowns, corrections with their trends).
 struct Normals {
-  Eigen::MatrixXd N;
+  explicit Normals(std::shared_ptr<const UnknownNodes> nodes) : N(nodes), b(Eigen::VectorXd::Zero(nodes->unknowns())) {}
+  /// Of a small system.
+  explicit Normals(int unknowns) : N(TieMatrix::dense(unknowns)), b(Eigen::VectorXd::Zero(unknowns)) {}
+  TieMatrix N;
   Eigen::VectorXd b;
 };
 
@@ -60,6 +64,8 @@ class TieSystem {
   std::pair<size_t, size_t> groups_of(std::uint32_t plane) const { return {first_group_[plane], first_group_[plane + 1]}; }
   std::pair<size_t, size_t> control_of(std::uint32_t plane) const { return {first_control_[plane], first_control_[plane + 1]}; }
   size_t planes() const { return first_group_.size() - 1; }
+  int globals() const { return static_cast<int>(problem_->globals.size()); }
+  std::shared_ptr<const UnknownNodes> nodes() const { return nodes_; }
   double surface() const { return surface_; }
 
  private:
@@ -68,39 +74,48 @@ class TieSystem {
   std::vector<GroupBlock> blocks_;
   std::vector<ControlRow> control_;
   std::vector<size_t> first_group_, first_control_;
+  std::shared_ptr<const UnknownNodes> nodes_;
   double surface_;
 };
 
 /// What is known beforehand of the unknowns: sum of (x - x0)^T information (x - x0), x counted from the present state.
 struct TiePrior {
-  Eigen::MatrixXd corrections;  ///< information of the corrections
-  Eigen::VectorXd correction;   ///< their present values: x0 = -present
-  Eigen::VectorXd globals;      ///< information of each global unknown; 0: free
-  Eigen::VectorXd departure;    ///< of each global unknown's present value from its start
+  /// `corrections`: of the knots, with factors on their sigmas; `correction`: their present values, those of the trends after them.
+  TiePrior(const TieProblem& problem, std::shared_ptr<const UnknownNodes> nodes, const ScaleFactors& position,
+           const ScaleFactors& attitude, const Eigen::VectorXd& correction, Eigen::VectorXd globals, Eigen::VectorXd departure);
+  /// (x - x0)^T information (x - x0) of the corrections as they are.
+  double squares() const { return present.dot(corrections.times(present)); }
+
+  TieMatrix corrections;      ///< information of the corrections, over all unknowns
+  Eigen::VectorXd present;    ///< their present values, over all unknowns: x0 = -present
+  Eigen::VectorXd globals;    ///< information of each global unknown; 0: free
+  Eigen::VectorXd departure;  ///< of each global unknown's present value from its start
 };
-void add_prior(const TiePrior& prior, Normals& n, bool of_globals = true);
+void add_prior(const TiePrior& prior, Normals& n);
 
 /// The solution with its covariance.
 struct TieSolution {
   Eigen::VectorXd x;               ///< steps of the unknowns
   std::vector<Eigen::Vector3d> d;  ///< of each plane
-  Eigen::MatrixXd covariance;      ///< of x; empty where not asked for
+  std::shared_ptr<const TieInverse> inverse;  ///< with the covariance of x where that was asked for
   bool solved = false;
+
+  /// Covariance of some of x: each two of one plane, of one line's neighbouring knots, or of the globals with any.
+  Eigen::MatrixXd covariance(const std::vector<int>& unknowns) const { return inverse->of(unknowns); }
+  Eigen::MatrixXd of_globals(int globals) const;
 };
 TieSolution solve(const TieSystem& system, const Normals& with_prior, const std::vector<PlaneRest>& rests, bool covariance);
-/// Covariance of a plane's d0, d1, d2.
-Eigen::Matrix3d plane_covariance(const PlaneRest& rest, const Eigen::MatrixXd& covariance);
+/// Covariance of a plane's d0, d1, d2; `of_rest`: of the unknowns of rest.index.
+Eigen::Matrix3d plane_covariance(const PlaneRest& rest, const Eigen::MatrixXd& of_rest);
 
-/// A linear function h . (x, d) of the unknowns and one plane's three, with the plane eliminated. h: over the unknowns `of`, then the
-/// three.
+/// A linear function h . (x, d) of the unknowns and one plane's three, with the plane eliminated. h: over the unknowns `of`, which are
+/// among the plane's, then the three.
 struct PlaneRow {
   PlaneRow(const Eigen::VectorXd& h, const std::vector<int>& of, const PlaneRest& rest);
-  double variance(const Eigen::MatrixXd& of_unknowns) const { return own_variance + covariance(*this, of_unknowns); }
-  /// Without what the two share of their plane itself.
-  double covariance(const PlaneRow& other, const Eigen::MatrixXd& of_unknowns) const;
+  /// `of_rest`: covariance of the unknowns of rest.index.
+  double variance(const Eigen::MatrixXd& of_rest) const { return own_variance + value.dot(of_rest * value); }
 
-  std::vector<int> index;
-  std::vector<double> value;
+  Eigen::VectorXd value;  ///< by the unknowns of rest.index
   double own_variance = 0.0;
 };
 

@@ -9,8 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace swath::calib {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 namespace {
 
 constexpr double taken_sigma = 0.25;   // relative sigma of a variance that is taken
@@ -86,52 +91,69 @@ void update_control(const TieTests& tests, const TieSelection& use, const Compon
 
 }  // namespace
 
-void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& s, const TieTests& tests,
-                       const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& o,
-                       SigmaFactors& f) {
-  const auto globals = static_cast<Eigen::Index>(problem.globals.size());
-  const auto with_freedom = [&](SigmaFactor& factor, double omega, double redundancy, bool wanted) {
-    update_with_freedom(factor, omega, redundancy, wanted, o.freedom);
-  };
-  update_surface(system.surface() * system.surface(), tests, use, o, f);
+namespace {
 
-  double omega[2] = {}, freedom[2] = {};
-  const CorrectionKnots& knots = *problem.knots;
-  const Eigen::VectorXd weighted = prior.corrections * correction;
+/// Of all corrections at once: their covariance as given, and modes of each scale.
+std::array<std::array<ScaleSums, 3>, 2> sums_of(const CorrectionKnots& knots, const TieMatrix& information, const TieSolution& s,
+                                                int globals, const VectorXd& correction, const SigmaFactors& f) {
+  std::array<std::array<ScaleSums, 3>, 2> out;
+  std::vector<int> numbers(static_cast<size_t>(correction.size()));
+  std::iota(numbers.begin(), numbers.end(), globals);
+  const MatrixXd left = s.covariance(numbers), Q = information.whole().bottomRightCorner(correction.size(), correction.size());
+  const VectorXd weighted = Q * correction, known = Q.cwiseProduct(left).rowwise().sum();
+  std::array<ScaleSums, 2> whole;
   for (Eigen::Index i = 0; i < correction.size(); ++i) {
-    const int part = knots.is_position(static_cast<int>(i)) ? 0 : 1;
-    omega[part] += correction[i] * weighted[i];
-    freedom[part] += 1.0 - prior.corrections.col(i).dot(s.covariance.col(globals + i).tail(correction.size()));
+    ScaleSums& of = whole[knots.is_position(static_cast<int>(i)) ? 0 : 1];
+    of.squares += correction[i] * weighted[i];
+    of.freedom += 1.0 - known[i];
   }
-  // Before the factors change.
-  const Eigen::MatrixXd apriori = knots.scales_apart() ? knots.covariance(f.of_position(), f.of_attitude()) : Eigen::MatrixXd();
-  const auto left = s.covariance.bottomRightCorner(correction.size(), correction.size());
-  for (const int part : {0, 1}) {
-    std::array<SigmaFactor, 3>& of_part = part == 0 ? f.position : f.attitude;
-    const bool wanted = part == 0 ? o.position : o.attitude;
-    if (!knots.scales_apart()) {
-      with_freedom(of_part[0], omega[part], freedom[part], wanted);
-      of_part[1] = of_part[2] = of_part[0];
-      continue;
-    }
-    // Means and drifts by their own prior, what is left by what it adds to both.
-    const Eigen::MatrixXd &mean = knots.modes(part == 0, line_mean), &drift = knots.modes(part == 0, line_drift);
-    Eigen::MatrixXd both(mean.rows(), mean.cols() + drift.cols());
+  for (const size_t part : {0, 1}) out[part][within_line] = whole[part];
+  if (!knots.scales_apart()) return out;
+  // Means and drifts by their own prior, what is left by what it adds to both. Before the factors change.
+  const MatrixXd apriori = knots.covariance(f.of_position(), f.of_attitude());
+  for (const size_t part : {0, 1}) {
+    const MatrixXd &mean = knots.modes(part == 0, line_mean), &drift = knots.modes(part == 0, line_drift);
+    MatrixXd both(mean.rows(), mean.cols() + drift.cols());
     both << mean, drift;
-    const Eigen::VectorXd value = both.transpose() * correction;
-    const Eigen::MatrixXd C = both.transpose() * apriori * both, S = both.transpose() * left * both;
-    const auto tell = [&](Eigen::Index first, Eigen::Index n) {
-      if (n == 0) return std::pair(0.0, 0.0);
+    const VectorXd value = both.transpose() * correction;
+    const MatrixXd C = both.transpose() * apriori * both, S = both.transpose() * left * both;
+    const auto of = [&](Eigen::Index first, Eigen::Index n) -> ScaleSums {
+      if (n == 0) return {};
       const auto expected = C.block(first, first, n, n).ldlt();
-      return std::pair(value.segment(first, n).dot(expected.solve(value.segment(first, n))),
-                       static_cast<double>(n) - expected.solve(S.block(first, first, n, n)).trace());
+      return {value.segment(first, n).dot(expected.solve(value.segment(first, n))),
+              static_cast<double>(n) - expected.solve(S.block(first, first, n, n)).trace()};
     };
-    const auto [omega_mean, freedom_mean] = tell(0, mean.cols());
-    const auto [omega_drift, freedom_drift] = tell(mean.cols(), drift.cols());
-    const auto [omega_both, freedom_both] = tell(0, both.cols());
-    with_freedom(of_part[line_mean], omega_mean, freedom_mean, wanted);
-    with_freedom(of_part[line_drift], omega_drift, freedom_drift, wanted);
-    with_freedom(of_part[within_line], omega[part] - omega_both, freedom[part] - freedom_both, wanted);
+    const ScaleSums trend = of(0, both.cols());
+    out[part] = {of(0, mean.cols()), of(mean.cols(), drift.cols()),
+                 {whole[part].squares - trend.squares, whole[part].freedom - trend.freedom}};
+  }
+  return out;
+}
+
+}  // namespace
+
+void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& s, const TieTests& tests,
+                       const TieSelection& use, const TiePrior& prior, const VectorXd& correction, const ComponentOptions& o,
+                       SigmaFactors& f) {
+  const auto globals = static_cast<int>(problem.globals.size());
+  update_surface(system.surface() * system.surface(), tests, use, o, f);
+  const CorrectionKnots& knots = *problem.knots;
+  if (correction.size() > 0) {
+    const auto sums = knots.is_chained() ? knots.chains().sums({f.of_position(), f.of_attitude()}, correction, *s.inverse, globals)
+                                         : sums_of(knots, prior.corrections, s, globals, correction, f);
+    for (const size_t part : {0, 1}) {
+      std::array<SigmaFactor, 3>& of_part = part == 0 ? f.position : f.attitude;
+      const bool wanted = part == 0 ? o.position : o.attitude;
+      if (knots.scales_apart()) {
+        for (const CorrectionScale scale : {line_mean, line_drift, within_line})
+          update_with_freedom(of_part[scale], sums[part][scale].squares, sums[part][scale].freedom, wanted, o.freedom);
+        continue;
+      }
+      ScaleSums all;
+      for (const ScaleSums& one : sums[part]) all.squares += one.squares, all.freedom += one.freedom;
+      update_with_freedom(of_part[0], all.squares, all.freedom, wanted, o.freedom);
+      of_part[1] = of_part[2] = of_part[0];
+    }
   }
   update_control(tests, use, o, f);
 }

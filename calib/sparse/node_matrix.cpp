@@ -86,6 +86,10 @@ NodeMatrix::NodeMatrix(std::vector<int> sizes) : sizes_(std::move(sizes)), first
 
 void NodeMatrix::add(int a, int b, const Eigen::Ref<const MatrixXd>& M) {
   if (a < b) return add(b, a, M.transpose());
+  block_for(a, b) += M;
+}
+
+Eigen::Map<MatrixXd> NodeMatrix::block_for(int a, int b) {
   const auto n = static_cast<size_t>(size(a)) * static_cast<size_t>(size(b));
   const auto [it, is_new] = at_.try_emplace(key(a, b), values_.size());
   if (is_new) {
@@ -93,13 +97,21 @@ void NodeMatrix::add(int a, int b, const Eigen::Ref<const MatrixXd>& M) {
     if (values_.size() + n > values_.capacity()) values_.reserve(values_.size() + std::max(n, values_.size() / 4));
     values_.resize(values_.size() + n, 0.0);
   }
-  Eigen::Map<MatrixXd>(values_.data() + it->second, size(a), size(b)) += M;
+  return {values_.data() + it->second, size(a), size(b)};
 }
 
 Eigen::Map<const MatrixXd> NodeMatrix::block(int a, int b) const {
   const auto it = at_.find(key(a, b));
   if (it == at_.end()) return {nullptr, 0, 0};
   return {values_.data() + it->second, size(a), size(b)};
+}
+
+std::vector<std::pair<int, int>> NodeMatrix::blocks() const {
+  std::vector<std::pair<int, int>> out;
+  out.reserve(at_.size());
+  for (const auto& [pair, where] : at_) out.emplace_back(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffffu));
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 std::vector<std::vector<int>> NodeMatrix::neighbours() const {
@@ -346,6 +358,21 @@ MatrixXd NodeFactor::covariance(const std::vector<int>& nodes) const {
       C.block(first[j], first[i], B.cols(), B.rows()) = B.transpose();
     }
   return C;
+}
+
+MatrixXd NodeFactor::covariance(int a, const std::vector<int>& rows, int b, const std::vector<int>& columns) const {
+  const int pa = place_[static_cast<size_t>(a)], pb = place_[static_cast<size_t>(b)];
+  if (pa < pb) return covariance(b, columns, a, rows).transpose();
+  const auto k = static_cast<size_t>(front_at_[static_cast<size_t>(pb)]);
+  const int row = row_in(k, pa), column = row_in(k, pb);
+  const Eigen::Index of_a = first_of_node_[static_cast<size_t>(pa)], of_b = first_of_node_[static_cast<size_t>(pb)];
+  MatrixXd out(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
+  for (Index j = 0; j < out.cols(); ++j)
+    for (Index i = 0; i < out.rows(); ++i) {
+      const int r = rows[static_cast<size_t>(i)], c = columns[static_cast<size_t>(j)];
+      out(i, j) = scale_[of_a + r] * values_[k].Z(row + r, column + c) * scale_[of_b + c];
+    }
+  return out;
 }
 
 }  // namespace swath::calib

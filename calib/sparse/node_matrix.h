@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "calib/sparse/node_order.h"
@@ -29,8 +30,12 @@ class NodeMatrix {
   int unknowns() const { return first_.back(); }
   /// Adds M (size(a) x size(b)) to the block of rows a and columns b, and its transpose to the block of rows b and columns a.
   void add(int a, int b, const Eigen::Ref<const Eigen::MatrixXd>& M);
+  /// The block of rows a >= columns b to add to, zero at first; until the next call of this or add().
+  Eigen::Map<Eigen::MatrixXd> block_for(int a, int b);
   /// The block of rows a >= columns b as stored; empty where nothing was added.
   Eigen::Map<const Eigen::MatrixXd> block(int a, int b) const;
+  /// Rows and columns of the blocks, rising.
+  std::vector<std::pair<int, int>> blocks() const;
   /// Per node, the other nodes that it has a block with.
   std::vector<std::vector<int>> neighbours() const;
   Eigen::VectorXd diagonal() const;
@@ -60,6 +65,8 @@ class NodeFactor {
   void invert(Keep keep = Keep::factor);
   /// The inverse's rows and columns of some nodes, in their order. Each two of them must have had a block, or a common front.
   Eigen::MatrixXd covariance(const std::vector<int>& nodes) const;
+  /// Some rows of node `a` and some columns of node `b` of the inverse.
+  Eigen::MatrixXd covariance(int a, const std::vector<int>& rows, int b, const std::vector<int>& columns) const;
 
  private:
   using Neighbours = std::vector<std::vector<int>>;

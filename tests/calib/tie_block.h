@@ -9,6 +9,7 @@
 
 #include "calib/adjust/correction_knots.h"
 #include "calib/adjust/tie_normals.h"
+#include "calib/adjust/tie_system.h"
 #include "calib/ties/tie_set.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
@@ -250,6 +251,12 @@ struct TieBench {
         knots(ties.lines, world.truth.latency.value, corrections, tactical_errors) {
     problem = {&ties, &world.scanner, &flown, &knots, std::move(globals), RobustWeight(2.5, 6.0), 1};
     state = {world.truth, Eigen::VectorXd::Zero(knots.size()), ties.planes, std::vector<double>(ties.planes.size(), 0.0)};
+  }
+  /// Of the corrections as the knots have it, with some of the globals.
+  TiePrior prior(const Eigen::VectorXd& globals, const Eigen::VectorXd& departure) const {
+    const int unknowns = static_cast<int>(problem.globals.size());
+    return TiePrior(problem, std::make_shared<UnknownNodes>(knots.nodes(unknowns)), {1, 1, 1}, {1, 1, 1}, state.correction, globals,
+                    departure);
   }
   TieBench(const TieBench&) = delete;
   TieBench& operator=(const TieBench&) = delete;

@@ -32,7 +32,7 @@ struct Solved {
   }
   void solve_now() {
     Normals n = system->sum(use, rests);
-    add_prior({bench->knots.information(), bench->state.correction, Eigen::Vector3d(1e4, 1e4, 1.0), Eigen::Vector3d::Zero()}, n);
+    add_prior(bench->prior(Eigen::Vector3d(1e4, 1e4, 1.0), Eigen::Vector3d::Zero()), n);
     solution = solve(*system, n, rests, true);
   }
   static constexpr size_t group = 40;
