@@ -105,7 +105,7 @@ double mismatch_after(const Adjustment& a) {
 
 /// The first round looks at few planes: it only leads to where the others begin. Sigmas by leaving out are not asked of it.
 void make_quick(TiePlaneOptions& planes, AdjustOptions& adjusted) {
-  planes.planes = std::max(300, planes.planes / 4);
+  planes.planes = std::max(300, *planes.planes / 4);
   planes.returns = std::max(planes.fewest, planes.returns / 3);
   adjusted.jackknife.lines = false;
   adjusted.jackknife.blocks = 0;

@@ -6,6 +6,7 @@
 #include "calib/adjust/correction_knots.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -155,16 +156,19 @@ void CorrectionKnots::make_dense(const CorrectionOptions& o, const ErrorCovarian
   }
   const Eigen::MatrixXd errors = given(instants);
   // The unknowns are P times the errors at the instants.
-  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size_, errors.rows());
+  std::vector<Eigen::Triplet<double>> entries;
   for (size_t l = 0; l < lines_.size(); ++l)
     for (const int part : {0, 1}) {
       const Knots& knots = part == 0 ? lines_[l].position : lines_[l].attitude;
       const Eigen::MatrixXd share = projection(part == 0 ? o.position : o.attitude, lines_[l].grid);
       for (Eigen::Index k = 0; k < share.rows(); ++k)
         for (Eigen::Index i = 0; i < share.cols(); ++i)
-          for (int c = 0; c < 3; ++c) P(knots.first + 3 * k + c, 6 * (first_instant[l] + i) + 3 * part + c) = share(k, i);
+          for (int c = 0; c < 3 && share(k, i) != 0.0; ++c)
+            entries.emplace_back(knots.first + 3 * k + c, 6 * (first_instant[l] + i) + 3 * part + c, share(k, i));
     }
-  covariance_ = P * errors * P.transpose();
+  Eigen::SparseMatrix<double> P(size_, errors.rows());
+  P.setFromTriplets(entries.begin(), entries.end());
+  covariance_ = P * (P * errors).transpose();
   for (int i = 0; i < size_; ++i) covariance_(i, i) += least_variance(is_position(i));
   information_ = inverse_of(covariance_);
 }

@@ -49,6 +49,7 @@ PreparedFlight::PreparedFlight(const io::Survey& survey, ShotStream shots, int t
   const double height = metres_down(lines), side = side_for(lines, 1.0);
   flight.frame = frame_of(times, height, flown);
   flight.scale = scale_of(height, side > 0.0 ? 1.0 / (side * side) : 0.0, survey.sigma);
+  for (const auto& [first, last] : times) flight.scale.seconds += last - first;
   flight.targets = surveyed_targets(io::read_control(survey, tally), flight.frame, tally);
 }
 

@@ -12,7 +12,8 @@ namespace swath::calib {
 struct TiePlaneOptions {
   std::optional<core::Metres> cell, piece, extent, roughness, margin;  ///< without them by sized()
   core::Metres mismatch{0.05}, target_search{5.0};
-  int planes = 1200, returns = 100, fewest = 12;
+  std::optional<int> planes;  ///< without it by sized()
+  int returns = 100, fewest = 12;
   std::optional<double> per_second;
   bool thin_walls = false;
 };
@@ -29,7 +30,7 @@ void describe(TiePlaneOptions& o, V& v) {
            "Returns nearer than this to an edge are left out; without it by the height, 0.4 m from 400 m on.");
   v.option("mismatch", o.mismatch, core::at_least(0.0), "Rms by which lines miss one another at present.");
   v.option("target_search", o.target_search, core::above(0.0), "Distance from its survey within which a target's plane is looked for.");
-  v.option("planes", o.planes, core::within(1, 100000), "Most planes, surveyed targets not counted.");
+  v.option("planes", o.planes, core::within(1, 100000), "Maximum number of planes, surveyed targets aside; without it two per second of the lines, 1200 or more.");
   v.option("per_second", o.per_second, core::above(0.0),
            "Most planes of one line in one second, those that say most of its pose; without it `planes` alone.");
   v.option("thin_walls", o.thin_walls, "Find walls that leave only a few returns in a cell, too; takes more memory.");
@@ -44,8 +45,9 @@ struct FlownScale {
   double height = 0.0;   ///< of the scanner above the ground, m
   double density = 0.0;  ///< returns of one line per m^2
   double noise = 0.0;    ///< of a return across its beam and along, m
+  double seconds = 0.0;  ///< of all lines together
 };
-/// `sensor`: sigmas of single records.
+/// Of lines whose time is not known. `sensor`: sigmas of single records.
 FlownScale scale_of(double height, double density, const core::SensorSigma& sensor);
 
 /// The options with every size: those that are stated, the others by the flight. Where nothing is known of it they are those of a flight at

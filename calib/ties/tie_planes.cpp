@@ -256,7 +256,7 @@ class Judge {
 FacetOptions facet_options(const TiePlaneOptions& o) {
   FacetOptions f;
   f.piece = o.piece->value, f.roughness = o.roughness->value, f.extent = o.extent->value, f.mismatch = o.mismatch.value;
-  f.returns = static_cast<std::uint32_t>(o.fewest), f.most = static_cast<size_t>(o.planes), f.thin_walls = o.thin_walls;
+  f.returns = static_cast<std::uint32_t>(o.fewest), f.most = static_cast<size_t>(*o.planes), f.thin_walls = o.thin_walls;
   return f;
 }
 

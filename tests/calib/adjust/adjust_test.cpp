@@ -185,6 +185,61 @@ TEST(Adjust, SigmasAreTrueOverManyFlights) {
         << words_of(p).name;
 }
 
+// What the corrections of all lines lack of the trajectory's errors, over their sigmas: mean squares by component.
+std::array<double, 6> squares_of_corrections(const Adjustment& a, const trajectory::Trajectory& flown, const trajectory::Trajectory& exact) {
+  std::array<double, 6> out{};
+  double n = 0.0;
+  for (const LineCorrection& c : a.corrections)
+    for (size_t k = 0; k < c.time.size(); ++k, ++n) {
+      const trajectory::Pose is = *flown.pose_at(c.time[k]), truth = *exact.pose_at(c.time[k]);
+      const Eigen::Matrix3d ned = ecef_R_ned_at(truth);
+      const Vector3d shift = ned.transpose() * (truth.position - is.position);
+      const core::Attitude x = core::attitude_of(ned.transpose() * is.ecef_R_body), y = core::attitude_of(ned.transpose() * truth.ecef_R_body);
+      const double error[6] = {shift.x(), shift.y(), shift.z(), y.roll - x.roll, y.pitch - x.pitch,
+                               std::remainder(y.heading - x.heading, 2.0 * core::pi)};
+      for (size_t i = 0; i < 6; ++i) out[i] += std::pow((error[i] - c.value[k][i]) / c.sigma[k][i], 2);
+    }
+  for (double& v : out) v /= n;
+  return out;
+}
+
+// Knots far more than may all be correlated with all are chained: the same values and sigmas, as true as those of few knots.
+TEST(Adjust, ChainedKnotsSayWhatAFewSay) {
+  const World w =
+      pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 10, 8);
+  constexpr int flights = 5;
+  const ErrorDraw draw(w, tactical_errors, 1.0);
+  const trajectory::Trajectory exact(w.exact);
+  AdjustOptions few = plain(), many = plain();
+  few.corrections.spacing.value = 1.0;
+  many.corrections.spacing.value = 0.2;
+  for (const ErrorShape shape : {ErrorShape::known, ErrorShape::guessed}) {
+    std::array<double, 6> of_few{}, of_many{};
+    for (int s = 0; s < flights; ++s) {
+      Dice dice(static_cast<std::uint64_t>(7000 + s));
+      const TieSet ties = ties_of(w, &dice, static_cast<std::uint64_t>(s));
+      const trajectory::Trajectory t(draw.with_errors(w.exact, dice));
+      const auto run = [&](const AdjustOptions& o) { return adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, o, 1, shape); };
+      const Adjustment a = run(few), b = run(many);
+      EXPECT_TRUE(b.converged) << s << " after " << b.iterations;
+      EXPECT_EQ(b.knot_spacing, 0.2);
+      EXPECT_GT(b.unknowns, 3600u);
+      for (const Parameter p : usual) {
+        const Estimate &x = a.estimates[p], &y = b.estimates[p];
+        EXPECT_NEAR(y.formal, x.formal, 0.1 * x.formal) << words_of(p).name;
+        EXPECT_NEAR(y.found, x.found, 0.4 * x.formal) << words_of(p).name;
+      }
+      const auto c = squares_of_corrections(a, t, exact), d = squares_of_corrections(b, t, exact);
+      for (size_t i = 0; i < 6; ++i) of_few[i] += c[i] / flights, of_many[i] += d[i] / flights;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+      EXPECT_NEAR(std::sqrt(of_many[i]), std::sqrt(of_few[i]), 0.1) << i;
+      EXPECT_GT(std::sqrt(of_many[i]), 0.7) << i;  // five flights, all errors of a line alike
+      EXPECT_LT(std::sqrt(of_many[i]), 1.5) << i;
+    }
+  }
+}
+
 TEST(Adjust, SigmasAreTrueWithControlAndWithoutCrossLines) {
   AdjustOptions o = plain();
   const MonteCarlo m = fly(pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 8, 6), 40, o, 3);

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <map>
+#include <memory>
+#include <set>
 
 #include "tests/calib/tie_block.h"
 
@@ -128,6 +131,83 @@ TEST(CorrectionKnots, EachScaleHasItsOwnFactor) {
   const Eigen::MatrixXd one = k.information(p, a) * C, bare = k.information() * k.covariance();
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(k.size(), k.size());
   EXPECT_LT((one - I).diagonal().cwiseAbs().maxCoeff(), 20.0 * std::max(1e-6, (bare - I).cwiseAbs().maxCoeff()));
+}
+
+// Twelve lines of 100 s with knots every second: 7272 corrections, where 1500 may all be correlated with all.
+struct ManyLines {
+  explicit ManyLines(CorrectionForm position = CorrectionForm::spline, CorrectionForm attitude = CorrectionForm::spline, int most = 100000) {
+    for (int l = 0; l < 12; ++l) lines.push_back({l + 1, 200.0 * l, 200.0 * l + 100.0});
+    CorrectionOptions o;
+    o.position = position;
+    o.attitude = attitude;
+    o.most = most;
+    o.spacing = core::Seconds(1.0);
+    knots = std::make_unique<CorrectionKnots>(lines, 0.0, o, test::tactical_errors, true);
+  }
+  std::vector<TieLine> lines;
+  std::unique_ptr<CorrectionKnots> knots;
+};
+
+TEST(CorrectionKnots, ManyAreChained) {
+  const ManyLines m;
+  const CorrectionKnots& k = *m.knots;
+  EXPECT_TRUE(k.is_chained());
+  EXPECT_EQ(k.spacing(), 1.0);
+  EXPECT_EQ(k.size(), 12 * (101 * 6 + 12));
+  // All six of a knot are one node, a line's trend is one, and so are the values that are common to all.
+  const std::vector<int> nodes = k.nodes(2);
+  EXPECT_EQ(nodes[0], 0);
+  EXPECT_EQ(nodes[1], 0);
+  std::vector<int> numbers;
+  const Eigen::MatrixXd D = k.derivatives(3, 640.0, numbers);
+  EXPECT_EQ(D.rows(), 6);
+  std::set<int> here;
+  for (const int n : numbers) here.insert(nodes[static_cast<size_t>(2 + n)]);
+  EXPECT_EQ(here.size(), 2u);
+  std::map<int, int> sizes;
+  for (const int n : nodes) ++sizes[n];
+  EXPECT_EQ(sizes.size(), 1u + 12u * 101u + 12u);
+  EXPECT_EQ(sizes[1], 6);
+  EXPECT_EQ(sizes.rbegin()->second, 12);
+}
+
+TEST(CorrectionKnots, ChainedPriorIsAsGiven) {
+  const ManyLines m;
+  const ScaleFactors one{1, 1, 1}, half{0.5, 0.5, 0.5};
+  const auto prior = m.knots->prior(one, half);
+  std::vector<int> numbers;
+  const Eigen::MatrixXd D = m.knots->derivatives(3, 640.0, numbers);
+  const Eigen::MatrixXd C = D * prior(numbers) * D.transpose(), given = test::tactical_errors({640.0});
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(C(i, i)), (i < 3 ? 1.0 : 0.5) * std::sqrt(given(i, i)), 0.15 * std::sqrt(given(i, i))) << i;
+  EXPECT_NEAR(std::sqrt(m.knots->mean_square(true, {})), std::sqrt((2 * 0.02 * 0.02 + 0.03 * 0.03) / 3), 0.001);
+  EXPECT_GT(m.knots->mean_square(false, line_mean), m.knots->mean_square(false, line_drift));
+}
+
+TEST(CorrectionKnots, ACommonShiftIsOneOfTheTrends) {
+  const ManyLines m;
+  const Eigen::MatrixXd B = m.knots->common_shift();
+  TieMatrix N(std::make_shared<UnknownNodes>(m.knots->nodes(0)));
+  m.knots->add_information({1, 1, 1}, {1, 1, 1}, 0, N);
+  // Of all lines alike, the trends' information alone holds it: twelve means with correlations of 1/e and less in 60 s.
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    const double sigma = 1.0 / std::sqrt(B.col(c).dot(N.times(B.col(c))));
+    const double one_line = c < 2 ? 0.02 : 0.03;
+    EXPECT_GT(sigma, one_line / std::sqrt(12.0) / 1.5);
+    EXPECT_LT(sigma, one_line);
+  }
+}
+
+TEST(CorrectionKnots, FewOrOfAnotherFormAreNotChained) {
+  EXPECT_FALSE(ManyLines(CorrectionForm::spline, CorrectionForm::drift).knots->is_chained());
+  EXPECT_TRUE(ManyLines(CorrectionForm::none, CorrectionForm::spline).knots->is_chained());
+  EXPECT_EQ(ManyLines(CorrectionForm::none, CorrectionForm::spline).knots->size(), 12 * (101 * 3 + 6));
+  const ManyLines few(CorrectionForm::spline, CorrectionForm::spline, 1000);
+  EXPECT_FALSE(few.knots->is_chained());
+  EXPECT_LE(few.knots->size(), 1000);
+  // Knots nearly as asked for may stay correlated with all.
+  CorrectionOptions o;
+  o.spacing = core::Seconds(0.5);
+  EXPECT_FALSE(CorrectionKnots({{1, 0.0, 100.0}, {2, 200.0, 300.0}}, 0.0, o, test::tactical_errors).is_chained());
 }
 
 TEST(CorrectionKnots, StatedSigmas) {

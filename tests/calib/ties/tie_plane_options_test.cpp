@@ -27,6 +27,20 @@ TEST(TiePlaneOptions, AnAircraftsSizes) {
   EXPECT_EQ(sized({}, scale_of(700.0, 0.1, two_centimetres())).cell->value, 5.0);
 }
 
+TEST(TiePlaneOptions, MorePlanesForLongerLines) {
+  FlownScale scale = scale_of(700.0, 4.0, two_centimetres());
+  EXPECT_EQ(*sized({}, scale).planes, 1200);
+  scale.seconds = 500.0;
+  EXPECT_EQ(*sized({}, scale).planes, 1200);
+  scale.seconds = 10000.0;
+  EXPECT_EQ(*sized({}, scale).planes, 20000);
+  scale.seconds = 1e9;
+  EXPECT_EQ(*sized({}, scale).planes, 100000);
+  TiePlaneOptions stated;
+  stated.planes = 300;
+  EXPECT_EQ(*sized(stated, scale).planes, 300);
+}
+
 TEST(TiePlaneOptions, ASmallOnesAt40Metres) {
   const TiePlaneOptions o = sized({}, scale_of(40.0, 200.0, two_centimetres()));
   EXPECT_EQ(o.piece->value, 4.0);
