@@ -31,9 +31,6 @@ PARTS = {
 }
 CALIBRATION = {"flight.pattern": "calibration", "imu.grade": "mems", "control.roof": "true", "output.trajectory": "none",
                "output.truth_returns": "false"}
-LONG = {"world.length": "6 km", "world.width": "900 m", "flight.lines": 7, "output.truth_returns": "false", "scanner.prf": "10 kHz"}
-PARTS["long"] = (DRIFTS | {"imu.file": "false", "gnss.file": "false", "control.targets": 0} | LONG, GIVEN)
-PARTS["long_mems"] = ({"imu.grade": "mems", "output.trajectory": "none", "imu.rate": "100 Hz"} | LONG, SMOOTHED)
 OUTAGE = ("line 3", 25.0, 60.0)  # begins so many seconds before that line, and lasts so long
 EDGE, REACH, FEWEST = 1.0, 0.5, 30  # m from a facet's edges, m from its plane, returns of a line
 

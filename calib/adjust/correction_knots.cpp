@@ -135,7 +135,7 @@ void CorrectionKnots::place_lines(const std::vector<TieLine>& lines, double late
     line.grid = grid_of(l.first + latency, l.last + latency, spacing_);
     place(line.position, o.position, line.grid, true);
     place(line.attitude, o.attitude, line.grid, false);
-    line.told = std::max(line.position.time.size(), line.attitude.time.size()) > 1
+    line.given = std::max(line.position.time.size(), line.attitude.time.size()) > 1
                     ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
                     : std::vector<double>{line.grid.front(), line.grid.back()};
     lines_.push_back(std::move(line));

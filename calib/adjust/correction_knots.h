@@ -57,7 +57,7 @@ class CorrectionKnots {
   Eigen::MatrixXd derivatives(size_t line, double t, std::vector<int>& numbers) const;
 
   /// Times at which the line's corrections are given: the finer of its two sets of knots, or its two ends.
-  const std::vector<double>& times(size_t line) const { return lines_[line].told; }
+  const std::vector<double>& times(size_t line) const { return lines_[line].given; }
   bool is_position(int unknown) const { return is_position_[static_cast<size_t>(unknown)]; }
 
   /// Not chained: the covariance as given, and its inverse.
@@ -88,7 +88,7 @@ class CorrectionKnots {
   };
   struct Line {
     Knots position, attitude;
-    std::vector<double> told, grid;  // the grid: instants of a spline's knots
+    std::vector<double> given, grid;  // instants at which corrections are given; of a spline's knots
   };
   static Weights weights(const Knots& knots, double t);
   void place_lines(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& options);
