@@ -6,7 +6,7 @@
 // delivered as they started while the others come from the joint solution.
 #include "calib/adjust/adjust.h"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -24,6 +24,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double common_shift = 1.0;  // m: how wrong all positions may be together, for Separation::unaided
+constexpr double smallest_eigenvalue = 1e-15;  // of a matrix scaled to ones on its diagonal
 constexpr int least_jackknifed = 4;   // lines: without one of two or three the others' geometry is another flight's
 
 std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& scanner, std::vector<Finding>& findings) {
@@ -57,8 +58,9 @@ std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& sca
 
 MatrixXd scaled_inverse(const MatrixXd& N) {
   const VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * (scale.asDiagonal() * N * scale.asDiagonal()).llt().solve(MatrixXd::Identity(N.rows(), N.cols())) *
-         scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * N * scale.asDiagonal());
+  const VectorXd values = eigen.eigenvalues().cwiseMax(smallest_eigenvalue).cwiseInverse();
+  return scale.asDiagonal() * eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
 }
 
 VectorXd sigmas_with(const MatrixXd& information, const VectorXd& prior) {
@@ -87,7 +89,7 @@ Separation separate(const TieProblem& p, const AdjustRounds& r) {
   const MatrixXd inner = B.transpose() * QB.bottomRows(B.rows()) + MatrixXd::Identity(3, 3) / (common_shift * common_shift);
   const MatrixXd moved = r.solution.inverse->solve(QB);
   const MatrixXd more = inner - QB.transpose() * moved;
-  out.unaided = (of_globals + moved.topRows(globals) * more.ldlt().solve(moved.topRows(globals).transpose())).diagonal().cwiseMax(0.0).cwiseSqrt();
+  out.unaided = (of_globals + moved.topRows(globals) * more.ldlt().solve(moved.topRows(globals).transpose())).diagonal().cwiseMax(of_globals.diagonal()).cwiseSqrt();
   return out;
 }
 
@@ -213,7 +215,7 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
   put_estimates(problem, rounds, separation, held, apriori, options.jackknife, out);
   keep_covariance(problem, rounds, held, out);
   put_diagnosis(problem, rounds, separation, apriori, options.limits, out);
-  find_wide_knots(options.corrections, knots.spacing(), knots.size(), out);
+  find_wide_knots(options.corrections, knots.spacing(), knots.corrections(), out);
   find_contradictions(problem, rounds, out);
 
   for (size_t i = 0; i < problem.globals.size(); ++i) {

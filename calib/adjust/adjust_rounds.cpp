@@ -96,6 +96,7 @@ void AdjustRounds::set_roughness() {
 void AdjustRounds::sum_up() {
   normals.emplace(system_->sum(use, rests));
   add_prior(*prior, *normals);
+  solution = {};  // its inverse is as large as the new one
   solution = solve(*system_, *normals, rests, true);
   if (solution.solved) tests = tests_of(*system_, solution, rests, use);
 }

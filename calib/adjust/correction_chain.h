@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "calib/adjust/tie_matrix.h"
@@ -16,17 +17,27 @@ enum CorrectionScale { line_mean = 0, line_drift = 1, within_line = 2 };
 /// Factors on the prior sigmas of the corrections of one part (position or attitude), by CorrectionScale.
 using ScaleFactors = std::array<double, 3>;
 
+/// What a chain needs of the covariance of a line's corrections. Rows and columns: component after component.
+struct LineCovariance {
+  std::vector<Eigen::MatrixXd> at;    ///< of each knot
+  std::vector<Eigen::MatrixXd> next;  ///< of the next knot (rows) with this one
+  Eigen::MatrixXd by_trends;          ///< of all knots, times a mean and a drift of unit length of each component
+};
+/// `covariance`: of all components at some instants, instant after instant; it is asked for a few hundred instants at a time.
+LineCovariance line_covariance(const std::vector<double>& times, Eigen::Index components,
+                               const std::function<Eigen::MatrixXd(const std::vector<double>&)>& covariance);
+
 /// One line: x(k) = mean + place(k) drift + y(k), y(k + 1) = A(k) y(k) + w(k).
 struct LineChain {
   std::vector<double> place;          ///< of each knot, -1 at the line's start to 1 at its end; empty: no trend
   std::vector<Eigen::MatrixXd> at;    ///< covariance of y at each knot
   std::vector<Eigen::MatrixXd> next;  ///< of y at the next knot (rows) with y at this one
   Eigen::MatrixXd trend;              ///< covariance of the means, then of the drifts, of all components
+  Eigen::MatrixXd own;                ///< the same of what y has of a mean and a drift
 };
-/// From the covariance of a line's corrections: knot after knot, `components` each, knots evenly spaced. Means, drifts and what is left
-/// have its variances, component by component, and neighbouring knots its correlation; correlations from knot to knot fall as the chain
-/// lets them. Lines of three knots or fewer have no trend.
-LineChain chain_of(const Eigen::MatrixXd& covariance, Eigen::Index components);
+/// Knots evenly spaced. Means, drifts and what is left have the variances of the line's covariance, component by component, and neighbouring
+/// knots nearly its correlation. A line of one knot has no trend.
+LineChain chain_of(const LineCovariance& line);
 
 /// Symmetric square root of a covariance scaled to correlations, times the sigmas: R R^T = covariance.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance);
@@ -37,7 +48,7 @@ struct ChainPlaces {
   std::vector<int> trend;              ///< means, drifts; empty where the chain has none
 };
 
-/// What the residuals say of one component of variance.
+/// Weighted squares of one component of variance, and their degrees of freedom.
 struct ScaleSums {
   double squares = 0.0, freedom = 0.0;
 };
@@ -59,7 +70,7 @@ class CorrectionChains {
                                                int first) const;
   /// Covariance between two components of knots of one line, not farther apart than neighbours.
   double covariance(const Factors& factors, size_t line, std::array<size_t, 2> knots, std::array<size_t, 2> components) const;
-  /// Sum over all knots of the variance by one scale, at factors of 1.
+  /// Sum over all knots of the variance on one scale, at factors of 1: of means, of drifts, of what is left.
   double squares(bool position, CorrectionScale scale) const;
   size_t components() const { return is_position_.size(); }
 

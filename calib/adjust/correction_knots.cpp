@@ -22,9 +22,9 @@ constexpr double least_attitude = 1e-9;  // rad
 // Independent part added to each unknown's variance so that nearly equal ones can be distinguished by the arithmetic: a thousandth of its
 // sigma.
 constexpr double own_share = 1e-6;
-// Unknowns that may all be correlated with all; and how much wider than asked for their knots may be before lines are chained.
-constexpr int most_together = 1500;
-constexpr double wider = 2.0;
+// Unknowns that may all be correlated with all. More are chained line by line, where that makes knots narrower by this.
+constexpr int max_together = 1500;
+constexpr double narrower = 1.5;
 
 double least_variance(bool position) {
   const double least = position ? least_position : least_attitude;
@@ -90,6 +90,22 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
   }
 }
 
+/// Correlation of the lines' means and drifts, by their errors at a quarter and three quarters of each: identity blocks on the diagonal.
+Eigen::MatrixXd correlation_of_trends(const Eigen::MatrixXd& errors, Eigen::Index q) {
+  const Eigen::Index n = errors.rows() / (2 * q);
+  Eigen::MatrixXd T(2 * q, 2 * q), back = Eigen::MatrixXd::Zero(errors.rows(), errors.cols());
+  T << 0.5 * Eigen::MatrixXd::Identity(q, q), 0.5 * Eigen::MatrixXd::Identity(q, q), -Eigen::MatrixXd::Identity(q, q),
+      Eigen::MatrixXd::Identity(q, q);
+  for (Eigen::Index l = 0; l < n; ++l) {
+    const Eigen::MatrixXd own = T * errors.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) * T.transpose();
+    back.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) = root_of(own).inverse() * T;
+  }
+  Eigen::MatrixXd out = back * errors * back.transpose();
+  // A combination that a line's errors do not have was given a share of its own.
+  for (Eigen::Index l = 0; l < n; ++l) out.block(2 * q * l, 2 * q * l, 2 * q, 2 * q).setIdentity();
+  return out;
+}
+
 }  // namespace
 
 ErrorCovariance stated_covariance(const CorrectionOptions& o) {
@@ -110,10 +126,12 @@ CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double laten
     : scales_apart_(scales_apart) {
   const int splines = (o.position == CorrectionForm::spline) + (o.attitude == CorrectionForm::spline);
   const auto is = [&](CorrectionForm form) { return o.position == form || o.attitude == form; };
-  const double together = spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(std::min(o.most, most_together)));
-  const bool chained = splines > 0 && !is(CorrectionForm::shift) && !is(CorrectionForm::drift) && together > wider * o.spacing.value &&
-                       o.most > most_together;
-  spacing_ = chained ? spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(o.most)) : together;
+  const double together = spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(std::min(o.most, max_together)));
+  const double apart = spacing_for(lines, splines, o.spacing.value, static_cast<size_t>(o.most));
+  const bool chained = splines > 0 && !is(CorrectionForm::shift) && !is(CorrectionForm::drift) && o.most > max_together &&
+                       unknowns_at(lines, splines, o.spacing.value) > max_together &&
+                       (apart == o.spacing.value || narrower * apart < together);
+  spacing_ = chained ? apart : together;
   place_lines(lines, latency, o);
   if (chained) {
     make_chains(given);
@@ -189,7 +207,6 @@ ChainPlaces CorrectionKnots::chain_places(const Line& line, bool trend) {
   return out;
 }
 
-// The lines' trends are correlated as their errors at a quarter and three quarters of each line are.
 void CorrectionKnots::make_chains(const ErrorCovariance& given) {
   std::vector<bool> is_position;
   std::vector<Eigen::Index> rows;  // of the errors' six
@@ -212,25 +229,13 @@ void CorrectionKnots::make_chains(const ErrorCovariance& given) {
   std::vector<double> quarters;
   knot_of_.resize(static_cast<size_t>(size_));
   for (const Line& l : lines_) {
-    chains.push_back(chain_of(some(l.grid), q));
+    chains.push_back(chain_of(line_covariance(l.grid, q, some)));
     places.push_back(chain_places(l, !chains.back().place.empty()));
     if (places.back().trend.empty()) continue;
     const double length = l.grid.back() - l.grid.front();
     quarters.insert(quarters.end(), {l.grid.front() + 0.25 * length, l.grid.front() + 0.75 * length});
   }
-  Eigen::MatrixXd trends(0, 0);
-  if (!quarters.empty()) {
-    trends = some(quarters);
-    const auto n = static_cast<Eigen::Index>(quarters.size()) / 2;
-    Eigen::MatrixXd T(2 * q, 2 * q), back = Eigen::MatrixXd::Zero(trends.rows(), trends.cols());
-    T << 0.5 * Eigen::MatrixXd::Identity(q, q), 0.5 * Eigen::MatrixXd::Identity(q, q), -Eigen::MatrixXd::Identity(q, q),
-        Eigen::MatrixXd::Identity(q, q);
-    for (Eigen::Index l = 0; l < n; ++l) {
-      const Eigen::MatrixXd own = T * trends.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) * T.transpose();
-      back.block(2 * q * l, 2 * q * l, 2 * q, 2 * q) = root_of(own).inverse() * T;
-    }
-    trends = (back * trends * back.transpose()).eval();
-  }
+  const Eigen::MatrixXd trends = quarters.empty() ? Eigen::MatrixXd(0, 0) : correlation_of_trends(some(quarters), q);
   chains_.emplace(std::move(chains), std::move(places), trends, is_position);
 }
 

@@ -23,11 +23,10 @@ ErrorCovariance stated_covariance(const CorrectionOptions& options);
 using Correction = Eigen::Matrix<double, 6, 1>;
 
 /// The unknowns of all lines in one vector: line by line the position's knots (north, east, down each), then the attitude's (roll, pitch,
-/// heading each); after all of them, where the lines are chained, the lines' trends, which no return sees.
+/// heading each); after all of them, where the lines are chained, the lines' trends, which no observation touches.
 ///
-/// Few unknowns have the covariance as given, all with all. Where knots as asked for are far more than that allows, all parts are splines
-/// and each line's knots are a Markov chain about its trend (calib/adjust/correction_chain.h): only the trends are correlated from line to
-/// line.
+/// Up to 1500 unknowns have the covariance as given, all with all. Of more, where all parts are splines, each line's knots are a Markov
+/// chain about its trend (calib/adjust/correction_chain.h), and only the trends are correlated from line to line.
 class CorrectionKnots {
  public:
   /// `latency` is added to the lines' times. The prior of shifts and drifts is that of the least-squares fit of such a curve to errors at
@@ -38,6 +37,7 @@ class CorrectionKnots {
 
   /// Corrections and trends.
   int size() const { return size_ + trends_; }
+  int corrections() const { return size_; }
   bool is_chained() const { return chains_.has_value(); }
   /// The node of each unknown, `globals` others counted before them: one node for all, or one per knot and trend.
   std::vector<int> nodes(int globals) const;

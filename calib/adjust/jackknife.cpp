@@ -37,11 +37,11 @@ Jackknife jackknife(const TieProblem& problem, const TieSystem& system, const Ti
       system.add(k, without, 1.0, n);
     }
     const TieInverse inverse(n.N);
-    if (!inverse.is_sound()) continue;
     MatrixXd right(n.b.size(), globals + 1);
     right.leftCols(globals).setIdentity();
     right.col(globals) = n.b;
     const MatrixXd left = inverse.solve(right);
+    if (!left.allFinite()) continue;
     ++j.replicates;
     for (Eigen::Index i = 0; i < globals; ++i) {
       const double d = -left(i, globals) - solution.x[i];

@@ -120,6 +120,27 @@ int reject_worst(const TieSystem& system, const TieTests& tests, const SnoopingO
   return count;
 }
 
+namespace {
+
+/// Covariance of the control's predictions, without what those of one plane share of it. Some columns at a time.
+MatrixXd predicted_covariance(const std::vector<ControlRow>& rows, const TieSolution& s, const std::vector<PlaneRest>& rests) {
+  constexpr Eigen::Index at_a_time = 32;
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  const auto value = [&](Eigen::Index i) { return PlaneRow(VectorXd(rows[i].by), std::vector<int>{}, rests[rows[i].plane]).value; };
+  MatrixXd out(n, n);
+  for (Eigen::Index first = 0; first < n; first += at_a_time) {
+    const Eigen::Index count = std::min(at_a_time, n - first);
+    MatrixXd some = MatrixXd::Zero(s.x.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k) some(rests[rows[first + k].plane].index, k) = value(first + k);
+    some = s.inverse->solve(some);
+    for (Eigen::Index i = 0; i < n; ++i)
+      out.block(i, first, 1, count) = value(i).transpose() * some(rests[rows[i].plane].index, Eigen::all);
+  }
+  return out;
+}
+
+}  // namespace
+
 ControlShift control_shift(const TieSystem& system, const std::vector<TiePlane>& planes, const TieSolution& s,
                            const std::vector<PlaneRest>& rests) {
   ControlShift out;
@@ -127,14 +148,13 @@ ControlShift control_shift(const TieSystem& system, const std::vector<TiePlane>&
   const auto n = static_cast<Eigen::Index>(rows.size());
   if (n == 0) return out;
   VectorXd misfit(n);
-  MatrixXd normals(n, 3), predicted = MatrixXd::Zero(s.x.size(), n);
+  MatrixXd normals(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ControlRow& r = rows[i];
-    predicted(rests[r.plane].index, i) = PlaneRow(VectorXd(r.by), std::vector<int>{}, rests[r.plane]).value;
     misfit[i] = r.f + r.by.dot(s.d[r.plane]);
     normals.row(i) = planes[r.plane].normal.transpose();
   }
-  MatrixXd C = predicted.transpose() * s.inverse->solve(predicted);
+  MatrixXd C = predicted_covariance(rows, s, rests);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       if (rows[j].plane == rows[i].plane) C(i, j) += rows[j].by.dot(rests[rows[i].plane].inverse * rows[i].by);

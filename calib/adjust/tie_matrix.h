@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The symmetric matrix of an adjustment's unknowns and its inverse. A small adjustment is one node, and its matrix dense; one of many flight
-// lines has a node per knot, and nothing dense is ever of its size (calib/sparse/node_matrix.h).
+// The symmetric matrix of an adjustment's unknowns and its inverse. A small adjustment is one node, its matrix dense; one of many knots has a
+// node for each, and only blocks of those that share an observation (calib/sparse/node_matrix.h).
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "calib/sparse/node_matrix.h"
@@ -60,8 +59,8 @@ class TieInverse {
  public:
   explicit TieInverse(const TieMatrix& matrix) : nodes_(matrix.nodes_), first_(firsts(matrix)), factor_(matrix.N_) {}
 
-  /// False where a combination of unknowns is not determined to the last digit.
-  bool is_sound() const { return factor_.smallest_pivot() > least_sound; }
+  /// Of the matrix scaled to ones on its diagonal: a combination of unknowns that is not determined to 1e-13 of that is held so far.
+  double smallest_pivot() const { return factor_.smallest_pivot(); }
   /// Columns side by side, rows by unknown.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
   /// Before of() and diagonal(); once.
@@ -71,7 +70,6 @@ class TieInverse {
   Eigen::VectorXd diagonal() const;
 
  private:
-  static constexpr double least_sound = 1.1e-13;  // of the scaled matrix: a smaller pivot was replaced
   static std::vector<int> firsts(const TieMatrix& matrix);
   int place(int unknown) const { return first_[static_cast<size_t>(nodes_->node(unknown))] + nodes_->row(unknown); }
 

@@ -155,9 +155,9 @@ TieSolution solve(const TieSystem& system, const Normals& n, const std::vector<P
   out.d.assign(system.planes(), Vector3d::Zero());
   out.x = VectorXd::Zero(n.b.size());
   auto inverse = std::make_shared<TieInverse>(n.N);
-  if (!inverse->is_sound()) return out;
-  out.x = -inverse->solve(n.b);
-  if (!out.x.allFinite()) return out;
+  const VectorXd x = -inverse->solve(n.b);
+  if (!x.allFinite()) return out;
+  out.x = x;
   out.solved = true;
   if (covariance) inverse->invert();
   out.inverse = std::move(inverse);

@@ -17,7 +17,7 @@ constexpr double roughness_of_largest = 0.08;              // m
 constexpr double least_over_noise = 2.5;                   // the roughness admits the records' noise
 constexpr double widest_margin = 0.4, least_margin = 0.1;  // m
 constexpr double returns_per_cell = 10.0;
-constexpr int fewest_planes = 1200, most_planes = 100000;
+constexpr int min_planes = 1200, max_planes = 100000;
 constexpr double planes_per_second = 2.0;
 constexpr double smallest_cell = 0.25, smallest_cell_high = 1.5, largest_cell = 5.0;  // m
 
@@ -44,7 +44,7 @@ TiePlaneOptions sized(TiePlaneOptions o, const FlownScale& s) {
   if (!o.cell && s.density > 0.0)
     o.cell = core::Metres(
         std::clamp(std::sqrt(returns_per_cell / s.density), std::max(smallest_cell, smallest_cell_high * share), largest_cell));
-  if (!o.planes) o.planes = std::clamp(static_cast<int>(std::min(planes_per_second * s.seconds, 1e9)), fewest_planes, most_planes);
+  if (!o.planes) o.planes = std::clamp(static_cast<int>(std::min(planes_per_second * s.seconds, 1e9)), min_planes, max_planes);
   return o;
 }
 

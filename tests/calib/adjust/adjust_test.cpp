@@ -203,8 +203,8 @@ std::array<double, 6> squares_of_corrections(const Adjustment& a, const trajecto
   return out;
 }
 
-// Knots far more than may all be correlated with all are chained: the same values and sigmas, as true as those of few knots.
-TEST(Adjust, ChainedKnotsSayWhatAFewSay) {
+// More knots than may all be correlated with all are chained: the same values and sigmas, as true as those of a few.
+TEST(Adjust, ManyKnotsGiveTheSameAsAFew) {
   const World w =
       pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 10, 8);
   constexpr int flights = 5;

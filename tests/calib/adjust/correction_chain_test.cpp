@@ -18,16 +18,26 @@ using Eigen::VectorXd;
 
 constexpr Index q = 2;  // a component of position and one of attitude
 
-// Two components, correlated with one another, that fall to 1/e in 40 and 15 s; knots a second apart.
-MatrixXd errors(Index knots) {
-  MatrixXd C(q * knots, q * knots);
-  for (Index i = 0; i < knots; ++i)
-    for (Index j = 0; j < knots; ++j) {
-      const double dt = std::abs(static_cast<double>(i - j)), slow = std::exp(-dt / 40.0), fast = std::exp(-dt / 15.0);
+// Two components, correlated with one another, that fall to 1/e in 40 and 15 s.
+MatrixXd errors_at(const std::vector<double>& times) {
+  const auto n = static_cast<Index>(times.size());
+  MatrixXd C(q * n, q * n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j) {
+      const double dt = std::abs(times[static_cast<size_t>(i)] - times[static_cast<size_t>(j)]);
+      const double slow = std::exp(-dt / 40.0), fast = std::exp(-dt / 15.0);
       C.block<q, q>(q * i, q * j) << 4.0 * slow, 0.5 * slow, 0.5 * slow, 0.0625 * slow + 0.25 * fast;
     }
   return C;
 }
+// Knots a second apart.
+std::vector<double> seconds(Index knots) {
+  std::vector<double> out(static_cast<size_t>(knots));
+  std::iota(out.begin(), out.end(), 0.0);
+  return out;
+}
+MatrixXd errors(Index knots) { return errors_at(seconds(knots)); }
+LineChain chain(Index knots) { return chain_of(line_covariance(seconds(knots), q, errors_at)); }
 
 // The covariance that a prior implies, trends left out.
 struct Implied {
@@ -36,7 +46,7 @@ struct Implied {
     std::vector<ChainPlaces> places;
     int next = 0;
     for (const Index n : knots) {
-      lines.push_back(chain_of(errors(n), q));
+      lines.push_back(chain(n));
       ChainPlaces p;
       for (Index k = 0; k < n; ++k) {
         p.knot.push_back({next, next + 1});
@@ -71,14 +81,34 @@ std::array<double, 3> variances(const MatrixXd& C, Index component, Index knots)
   return {trend(0, 0), trend(1, 1), (rest * one * rest.transpose()).trace() / static_cast<double>(knots)};
 }
 
-TEST(CorrectionChain, AFewKnotsKeepTheirCovariance) {
-  const Implied p({3}, MatrixXd(0, 0));
-  EXPECT_EQ(p.size, 6);
-  EXPECT_LT((p.of_corrections() - errors(3)).norm(), 1e-4 * errors(3).norm());
+TEST(CorrectionChain, CovarianceOfALineInParts) {
+  constexpr Index knots = 300;  // three parts
+  const MatrixXd C = errors(knots);
+  const LineCovariance line = line_covariance(seconds(knots), q, errors_at);
+  MatrixXd B = MatrixXd::Zero(q * knots, 2 * q);
+  for (Index k = 0; k < knots; ++k)
+    for (Index c = 0; c < q; ++c) B(q * k + c, c) = 1.0, B(q * k + c, q + c) = static_cast<double>(k) - 0.5 * static_cast<double>(knots - 1);
+  for (Index c = 0; c < 2 * q; ++c) B.col(c).normalize();
+  EXPECT_LT((line.by_trends - C * B).norm(), 1e-9 * (C * B).norm());
+  for (const Index k : {0, 126, 127, 128, 255, 298}) {
+    EXPECT_EQ(line.at[static_cast<size_t>(k)], (C.block<q, q>(q * k, q * k)));
+    EXPECT_EQ(line.next[static_cast<size_t>(k)], (C.block<q, q>(q * (k + 1), q * k)));
+  }
+}
+
+TEST(CorrectionChain, OneKnotHasNoTrend) {
+  const Implied p({1}, MatrixXd(0, 0));
+  EXPECT_EQ(p.size, 2);
+  EXPECT_LT((p.of_corrections() - errors(1)).norm(), 1e-9 * errors(1).norm());
+}
+
+TEST(CorrectionChain, TwoKnotsKeepTheirCovariance) {
+  const Implied p({2}, MatrixXd::Identity(2 * q, 2 * q));
+  EXPECT_LT((p.of_corrections() - errors(2)).norm(), 0.05 * errors(2).norm());
 }
 
 TEST(CorrectionChain, MeanDriftAndTheRestHaveTheirVariances) {
-  for (const Index knots : {5, 30, 120}) {
+  for (const Index knots : {3, 5, 30, 120}) {
     const Implied p({knots}, MatrixXd::Identity(2 * q, 2 * q));
     for (Index c = 0; c < q; ++c) {
       const auto is = variances(p.of_corrections(), c, knots), wanted = variances(errors(knots), c, knots);
@@ -128,7 +158,7 @@ TEST(CorrectionChain, FactorsOfEachPartAndScale) {
 
 TEST(CorrectionChain, CovarianceOfNeighbouringKnots) {
   const CorrectionChains::Factors factors = {{{3, 2, 1}, {1, 1.5, 2}}};
-  const Implied p({30, 3}, MatrixXd::Identity(2 * q, 2 * q), factors);
+  const Implied p({30, 3}, MatrixXd::Identity(4 * q, 4 * q), factors);
   const double unit = p.whole.diagonal().head(60).maxCoeff();
   for (const size_t k : {size_t{0}, size_t{12}, size_t{28}})
     for (const size_t c : {size_t{0}, size_t{1}})
@@ -145,7 +175,7 @@ TEST(CorrectionChain, CovarianceOfNeighbouringKnots) {
 TEST(CorrectionChain, SquaresOfEachScale) {
   constexpr int draws = 200;
   const CorrectionChains::Factors one = {{{1, 1, 1}, {1, 1, 1}}};
-  const Implied p({30, 25, 3}, MatrixXd::Identity(4 * q, 4 * q));
+  const Implied p({30, 25, 1}, MatrixXd::Identity(4 * q, 4 * q));
   const MatrixXd root = p.whole.llt().matrixL();
   TieMatrix known = TieMatrix::dense(p.size);
   std::vector<int> all(static_cast<size_t>(p.size));
@@ -169,7 +199,7 @@ TEST(CorrectionChain, SquaresOfEachScale) {
   }
   for (const size_t part : {0, 1})
     for (const size_t s : {0, 1, 2}) {
-      const double n = s == within_line ? 58.0 : 2.0;
+      const double n = s == within_line ? 56.0 : 2.0;
       EXPECT_NEAR(sums[part][s].freedom, n, 0.02) << part << s;
       // Mean of `draws` sums of n squares.
       EXPECT_NEAR(squares[part][s], n, 4.0 * std::sqrt(2.0 * n / draws)) << part << s;
@@ -191,6 +221,9 @@ TEST(CorrectionChain, FreedomIsWhatTheDataLeave) {
 
 TEST(CorrectionChain, StatedSquares) {
   const Implied p({30}, MatrixXd::Identity(2 * q, 2 * q));
+  const auto wanted = variances(errors(30), 0, 30);
+  EXPECT_NEAR(p.chains.squares(true, line_mean), 30 * wanted[0], 0.03 * 30 * wanted[0]);
+  EXPECT_NEAR(p.chains.squares(true, within_line), 30 * wanted[2], 0.03 * 30 * wanted[2]);
   const double all = p.chains.squares(true, line_mean) + p.chains.squares(true, line_drift) + p.chains.squares(true, within_line);
   double expected = 0.0;
   for (Index k = 0; k < 30; ++k) expected += p.whole(2 * k, 2 * k);

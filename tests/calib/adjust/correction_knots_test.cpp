@@ -204,10 +204,13 @@ TEST(CorrectionKnots, FewOrOfAnotherFormAreNotChained) {
   const ManyLines few(CorrectionForm::spline, CorrectionForm::spline, 1000);
   EXPECT_FALSE(few.knots->is_chained());
   EXPECT_LE(few.knots->size(), 1000);
-  // Knots nearly as asked for may stay correlated with all.
+  // A bound that leaves knots nearly as wide is not worth it.
+  EXPECT_FALSE(ManyLines(CorrectionForm::spline, CorrectionForm::spline, 1600).knots->is_chained());
   CorrectionOptions o;
-  o.spacing = core::Seconds(0.5);
+  o.spacing = core::Seconds(1.0);
   EXPECT_FALSE(CorrectionKnots({{1, 0.0, 100.0}, {2, 200.0, 300.0}}, 0.0, o, test::tactical_errors).is_chained());
+  o.spacing = core::Seconds(0.5);
+  EXPECT_TRUE(CorrectionKnots({{1, 0.0, 100.0}, {2, 200.0, 300.0}}, 0.0, o, test::tactical_errors).is_chained());
 }
 
 TEST(CorrectionKnots, StatedSigmas) {

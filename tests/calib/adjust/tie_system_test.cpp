@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "tests/calib/tie_block.h"
@@ -138,6 +139,46 @@ TEST(TieSystem, LeavingOutIsSubtracting) {
   const Normals expected = system.sum(without, rests);
   EXPECT_LT((all.N.whole() - expected.N.whole()).norm(), 1e-12 * expected.N.whole().norm());
   EXPECT_LT((all.b - expected.b).norm(), 1e-9 * expected.b.norm());
+}
+
+// Chained lines: everything that is asked of the inverse is what the dense matrix gives, a group left out among it.
+TEST(TieSystem, ChainedLinesAsTheDenseMatrix) {
+  World w = make_world({{0.0, 0.0}, {180.0 * deg, 60.0}, {90.0 * deg, 0.0}}, block_planes(2, 3, 3));
+  w.returns = 8;
+  Dice dice(3);
+  survey(w.planes[1], 0.02, &dice);
+  survey(w.planes[5], 0.02, &dice);
+  const TieSet ties = ties_of(w, &dice);
+  CorrectionOptions o;
+  o.spacing = core::Seconds(0.2);
+  const TieBench s(w, ties, w.exact, o, some_globals);
+  ASSERT_TRUE(s.knots.is_chained());
+  const TiePass pass = linearise(s.problem, s.state, s.noise, 1.0);
+  const TieSystem system(s.problem, pass.blocks, control_rows(s.state.planes, 1.0), 0.004);
+  TieSelection use{std::vector<char>(ties.groups.size(), 1), std::vector<char>(8, 1)};
+  use.group[4] = 0;
+  use.control[2] = 0;
+  std::vector<PlaneRest> rests;
+  Normals n = system.sum(use, rests);
+  add_prior(s.prior(VectorXd::Constant(5, 1e4), VectorXd::Zero(5)), n);
+  const TieSolution solution = solve(system, n, rests, true);
+  ASSERT_TRUE(solution.solved);
+  const MatrixXd N = n.N.whole();
+  const VectorXd scale = N.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd C = scale.asDiagonal() * (scale.asDiagonal() * N * scale.asDiagonal()).llt().solve(MatrixXd(scale.asDiagonal()));
+  const auto near = [&](const MatrixXd& is, const MatrixXd& wanted) {
+    for (Eigen::Index i = 0; i < is.rows(); ++i)
+      for (Eigen::Index j = 0; j < is.cols(); ++j)
+        EXPECT_NEAR(is(i, j), wanted(i, j), 1e-5 * std::sqrt(wanted(i, i) * wanted(j, j)));
+  };
+  EXPECT_LT((solution.x + C * n.b).cwiseQuotient(C.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff(), 1e-5);
+  for (const PlaneRest& rest : rests) near(solution.covariance(rest.index), C(rest.index, rest.index));
+  near(solution.of_globals(5), C.topLeftCorner(5, 5));
+  std::vector<int> numbers;
+  s.knots.derivatives(1, s.ties.lines[1].first + 4.04, numbers);
+  for (int& k : numbers) k += 5;
+  near(solution.covariance(numbers), C(numbers, numbers));
+  EXPECT_LT((solution.inverse->diagonal() - C.diagonal()).cwiseQuotient(C.diagonal()).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST(TieSystem, WhiteNormalsAreThoseOfIndependentReturns) {
