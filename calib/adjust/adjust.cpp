@@ -57,6 +57,7 @@ std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& sca
 }
 
 MatrixXd scaled_inverse(const MatrixXd& N) {
+  if (N.rows() == 0) return N;
   const VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * N * scale.asDiagonal());
   const VectorXd values = eigen.eigenvalues().cwiseMax(smallest_eigenvalue).cwiseInverse();
