@@ -11,6 +11,8 @@ namespace {
 
 constexpr int finest = 8;                // parts along a side of a tile: each has its halo, which takes time
 constexpr double number_in_tile = 12.0;  // bytes of a part's point: its row in the tile, as found and as kept
+// Points of a neighbour that wait to be thinned beside those that are left of it.
+constexpr double waiting = static_cast<double>(TileStore::thinned_at_once + chunk_rows);
 
 double bytes_of(core::ColumnSet columns, double source_width) {
   double bytes = columns.has(core::Column::source) ? source_width : 0.0;
@@ -49,14 +51,23 @@ StageMemory::StageMemory(const TileStore& store, const stages::Stage& stage, con
   given_bytes_ = bytes_of(stage.info().gives, 0.0);
 }
 
-/// Bytes for `rows` points in a square of `side` metres, `near` of which the stage's own bytes are for.
-double StageMemory::needed(double rows, double near, double side, double all_points) const {
+/// Bytes of what is worked on at once: the points of `box` with those around it.
+double StageMemory::needed(const Points& points, const stages::Box& box) const {
+  const double side = 0.5 * (box.x1 - box.x0 + box.y1 - box.y0);  // the square of the same perimeter is not smaller
   square_.tile_side = side;
   const double chunk = 2.0 * static_cast<double>(chunk_rows) * row_bytes_;  // read, packed and unpacked
   const stages::TileMemory own = stage_.memory(square_);
-  double bytes = chunk + row_bytes_ * rows + own.bytes_per_point * (near * own.share_of_points);
-  for (const stages::Raster& r : own.rasters) bytes += r.total(all_points);
-  return bytes;
+  double bytes = chunk + row_bytes_ * points.rows + own.bytes_per_point * (points.near * own.share_of_points), first = 0.0;
+  for (stages::Raster r : own.rasters) {
+    if (!std::isfinite(r.rim)) {
+      bytes += r.total(points.all);
+      continue;
+    }
+    const stages::Box there = store_.extent_in(box.grown(0.5 * (r.side - side))).grown(r.rim);
+    r.side = std::min(r.side, std::sqrt(there.area()));
+    first += r.total(points.all);
+  }
+  return bytes + std::max(first, own.bytes_per_own * points.own);
 }
 
 TileGroup StageMemory::of(std::vector<TileKey> tiles) const {
@@ -64,25 +75,28 @@ TileGroup StageMemory::of(std::vector<TileKey> tiles) const {
   for (const TileKey k : tiles)
     if (const auto at = store_.tiles().find(k); at != store_.tiles().end()) group.own += at->second;
   const TileBox box(tiles);
-  const double side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
+  const stages::Box metres = box.metres(context_.tile_side);
+  const auto own = static_cast<double>(group.own);
   if (stage_.is_streamed()) {
     const auto rows = static_cast<double>(TileStore::rows_at_once);
     group.with_halo = group.own;
-    group.bytes = static_cast<std::uint64_t>(needed(2.0 * rows, rows, side, static_cast<double>(group.own)));
+    group.bytes = static_cast<std::uint64_t>(needed({2.0 * rows, rows, rows, own}, metres));
     group.tiles = std::move(tiles);
     return group;
   }
-  const TileStore::Load load = store_.load_with_halo(tiles, stage_.halo());
-  const double left = stage_.left_per_area() * box.metres(context_.tile_side).grown(stage_.halo()).area();
-  const auto points = static_cast<double>(load.points);
-  const double near =
-      stage_.near_halo() < stage_.halo() ? static_cast<double>(store_.load_with_halo(tiles, stage_.near_halo()).points) : points;
-  const double rows = std::min(points, near + left);
-  // A tile that is joined to others is there once more for a moment.
-  const double moment = tiles.size() > 1 ? static_cast<double>(load.neighbour) : 0.0;
+  const double halo = stage_.halo();
+  const auto all = static_cast<double>(store_.load_with_halo(tiles, halo).points);
+  double near = all, rows = all, moment = 0.0;
+  if (stage_.near_halo() < halo) {
+    const TileStore::Load load = store_.load_with_halo(tiles, stage_.near_halo());
+    const double left = static_cast<double>(store_.left_around(tiles, stage_.near_halo(), halo, stage_.left_per_area()));
+    const double of_tile = stage_.left_per_area() * context_.tile_side * context_.tile_side;
+    near = std::min(all, static_cast<double>(load.points)), rows = std::min(all, near + left);
+    // What one neighbour gives waits to be thinned.
+    moment = std::min(all - own, static_cast<double>(load.neighbour) + of_tile + waiting);
+  }
   group.with_halo = static_cast<std::uint64_t>(rows);
-  group.bytes = static_cast<std::uint64_t>(needed(rows + moment, std::min(points, near), side, points) +
-                                           number_in_tile * (rows - static_cast<double>(group.own)));
+  group.bytes = static_cast<std::uint64_t>(needed({rows + moment, near, own, all}, metres));
   group.tiles = std::move(tiles);
   return group;
 }
@@ -135,9 +149,9 @@ TileGroup StageMemory::cut(TileGroup group, std::uint64_t budget, SquareCounts& 
         const TilePart part{group.tiles[0], n, i, j};
         const double points = around.in(part, halo, side);
         const double near_points = near < halo ? around.in(part, near, side) : points;
-        const double reached = part_side + 2.0 * halo;
+        const double reached = part_side + 2.0 * halo, own = around.in(part, 0.0, side);
         const double rows = std::min(points, near_points + stage_.left_per_area() * reached * reached);
-        const double one = needed(rows, std::min(points, near_points), part_side, points) + number_in_tile * rows;
+        const double one = needed({rows, std::min(points, near_points), own, points}, part.metres(side)) + number_in_tile * rows;
         if (one > bytes) bytes = one, rows_of_largest = rows;
       }
     // What the parts give is put together in a column of the whole tile.

@@ -42,7 +42,11 @@ class StageMemory {
 
  private:
   class Around;
-  double needed(double rows, double near, double side, double all_points) const;
+  /// Points that are read at once, those that the stage's own bytes are for, its own of them, and all within the halo.
+  struct Points {
+    double rows, near, own, all;
+  };
+  double needed(const Points& points, const stages::Box& box) const;
 
   const TileStore& store_;
   const stages::Stage& stage_;

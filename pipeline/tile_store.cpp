@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -30,6 +31,22 @@ core::Value strip_note(const fs::path& strip_folder) {
   std::optional<PieceRecord> record = read_record(strip_folder / strip_record);
   if (!record) throw damaged_work(strip_folder / strip_record);
   return std::move(record->note);
+}
+
+/// Around two boxes.
+stages::Box joined(const stages::Box& a, const stages::Box& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+double common_area(const stages::Box& a, const stages::Box& b) {
+  const double width = std::min(a.x1, b.x1) - std::max(a.x0, b.x0), height = std::min(a.y1, b.y1) - std::max(a.y0, b.y0);
+  return std::max(0.0, width) * std::max(0.0, height);
+}
+
+stages::Box extent_of(const Block& b) {
+  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.end());
+  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.end());
+  return {b.origin.x() + *west, b.origin.y() + *south, b.origin.x() + *east, b.origin.y() + *north};
 }
 
 /// Of an entry of the note's list of tiles.
@@ -104,6 +121,7 @@ void StripWriter::write(const Block& block) {
 void StripWriter::flush(TileKey key, Block& points) {
   if (points.size() == 0) return;
   Written& written = written_[key];
+  written.extent = written.points > 0 ? joined(written.extent, extent_of(points)) : extent_of(points);
   StoreFile file(part_ / points_file(key), StoreFile::Mode::append, &written.checksum);
   write_chunks(file, points, 0, points.size(), core::columns_of(points), fields_);
   file.close();
@@ -122,7 +140,8 @@ void StripWriter::commit(const std::string& note) {
   PieceRecord record;
   core::Value::Array tiles;
   for (const auto& [key, written] : written_) {
-    tiles.emplace_back(core::Value::Array{key.ix, key.iy, written.points});
+    const stages::Box& e = written.extent;
+    tiles.emplace_back(core::Value::Array{key.ix, key.iy, written.points, e.x0, e.y0, e.x1, e.y1});
     record.files.push_back({points_file(key), written.bytes, written.checksum.text()});
   }
   record.note =
@@ -167,6 +186,10 @@ void TileStore::open(const std::vector<std::string>& names) {
     for (const core::Value& one : index.find("tiles")->items()) {
       const TileKey key = key_of(one);
       const auto n = static_cast<std::uint64_t>(one.items()[2].as_int());
+      const auto edge = [&](size_t k) { return one.items().at(k).as_number(); };
+      const stages::Box extent{edge(3), edge(4), edge(5), edge(6)};
+      const auto [of_tile, is_new] = extents_.try_emplace(key, extent);
+      if (!is_new) of_tile->second = joined(of_tile->second, extent);
       segments_[key].push_back({strips_ / name / points_file(key), n});
       tiles_[key] += n;
       points_ += n;
@@ -176,6 +199,7 @@ void TileStore::open(const std::vector<std::string>& names) {
 
 void TileStore::assume(TileKey key, std::uint64_t points, ColumnSet columns) {
   tiles_[key] += points;
+  extents_[key] = TileBox(key, key).metres(side_);
   points_ += points;
   columns_ = columns_ | columns;
 }
@@ -252,9 +276,7 @@ TileStore::Load TileStore::load_with_halo(const std::vector<TileKey>& keys, doub
   Load load;
   for (const TileKey k : keys) {
     const auto at = tiles_.find(k);
-    if (at == tiles_.end()) continue;
-    load.points += at->second;
-    if (keys.size() > 1) load.neighbour = std::max(load.neighbour, at->second);
+    if (at != tiles_.end()) load.points += at->second;
   }
   if (halo <= 0) return load;
   constexpr double unevenness = 1.3;  // points of a neighbour may lie denser along the common edge
@@ -266,12 +288,37 @@ TileStore::Load TileStore::load_with_halo(const std::vector<TileKey>& keys, doub
       if (tiles.holds({ix, iy}) || at == tiles_.end()) continue;
       // Share of the neighbour that the halo covers.
       const auto share = [&](int d) { return d == 0 ? 1.0 : std::clamp((halo - (d - 1) * side_) / side_, 0.0, 1.0); };
-      load.points += static_cast<std::uint64_t>(
+      const auto points = static_cast<std::uint64_t>(
           static_cast<double>(at->second) *
           std::min(1.0, unevenness * share(apart(ix, tiles.low.ix, tiles.high.ix)) * share(apart(iy, tiles.low.iy, tiles.high.iy))));
-      load.neighbour = std::max(load.neighbour, at->second);
+      load.points += points;
+      load.neighbour = std::max(load.neighbour, points);
     }
   return load;
+}
+
+std::uint64_t TileStore::left_around(const std::vector<TileKey>& keys, double near, double halo, double per_area) const {
+  const TileBox tiles(keys);
+  const stages::Box inner = tiles.metres(side_).grown(near), outer = tiles.metres(side_).grown(halo);
+  double left = 0.0;
+  for (const auto& [key, extent] : extents_) {
+    if (tiles.holds(key)) continue;
+    const stages::Box there = extent.grown(1.0);  // cells at its rim hold points, too
+    left += std::min(static_cast<double>(tiles_.at(key)), per_area * (common_area(there, outer) - common_area(there, inner)));
+  }
+  return static_cast<std::uint64_t>(left);
+}
+
+stages::Box TileStore::extent_in(const stages::Box& box) const {
+  const auto tile = [&](double edge) { return static_cast<int>(std::floor(edge / side_)); };
+  std::optional<stages::Box> all;
+  for (int iy = tile(box.y0); iy <= tile(box.y1); ++iy)
+    for (int ix = tile(box.x0); ix <= tile(box.x1); ++ix)
+      if (const auto at = extents_.find({ix, iy}); at != extents_.end()) all = all ? joined(*all, at->second) : at->second;
+  if (!all) return {box.x0, box.y0, box.x0, box.y0};
+  const auto inside = [](double v, double low, double high) { return std::clamp(v, low, high); };
+  return {inside(all->x0, box.x0, box.x1), inside(all->y0, box.y0, box.y1), inside(all->x1, box.x0, box.x1),
+          inside(all->y1, box.y0, box.y1)};
 }
 
 }  // namespace swath::pipeline

@@ -46,6 +46,7 @@ class StripWriter {
   /// What went to the file of one tile.
   struct Written {
     std::uint64_t points = 0, bytes = 0;
+    stages::Box extent;  ///< of the points, map metres
     Checksum checksum;
   };
   std::map<TileKey, Written> written_;
@@ -91,8 +92,9 @@ class TileStore {
   /// The columns of one tile's points (x, y, z always).
   core::Block read(TileKey key, core::ColumnSet columns) const;
   /// The points of tiles, one tile after the other, then those of their neighbours within `halo` metres of the box around them, in order
-  /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one. `thin`: takes out of one
-  /// neighbour's points those that are not needed. `rows`: there is room for so many points from the start.
+  /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one. `thin`: takes out of some of
+  /// one neighbour's points those that are not needed, more than once while they are read. `rows`: there is room for so many points from
+  /// the start.
   core::Block read_with_halo(const std::vector<TileKey>& keys, double halo, core::ColumnSet columns, size_t& own,
                              const std::function<void(core::Block&)>& thin = {}, std::uint64_t rows = 0) const;
   /// The points of a part of a tile, then all others within `halo` metres of it. `rows`: gets the numbers of the former within the tile;
@@ -102,14 +104,19 @@ class TileStore {
   /// The columns of one tile's points from the first to the last, at most rows_at_once of them at a time.
   void each_rows(TileKey key, core::ColumnSet columns, const std::function<void(core::Block&)>& f) const;
   static constexpr size_t rows_at_once = 1u << 17;
+  static constexpr size_t thinned_at_once = 1u << 18;  ///< points that wait for thin(), beside those that it has left
   /// Counts a tile's points in n x n squares of it, row by row from the south-west.
   std::vector<std::uint32_t> counts_of(TileKey key, int n) const;
-  /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of the largest neighbour, which it holds for a
-  /// moment.
+  /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of them that come from one neighbour at most.
   struct Load {
     std::uint64_t points = 0, neighbour = 0;
   };
   Load load_with_halo(const std::vector<TileKey>& keys, double halo) const;
+  /// Of the points around the tiles, farther off than `near` and within `halo`, at most so many: `per_area` of each square metre that
+  /// their tiles' points extend over.
+  std::uint64_t left_around(const std::vector<TileKey>& keys, double near, double halo, double per_area) const;
+  /// Around the points of those tiles that the box touches, as far as it goes; without area where there are none.
+  stages::Box extent_in(const stages::Box& box) const;
 
  private:
   /// The files that overlay a tile's columns, and what each gives.
@@ -119,8 +126,8 @@ class TileStore {
   };
   Overlays overlays_of(TileKey key, core::ColumnSet columns) const;
   void expect_whole(TileKey key, size_t rows) const;
-  /// As read(), with room for `more` points.
-  core::Block read(TileKey key, core::ColumnSet columns, size_t more) const;
+  /// Appends what read() gives; there is room for so many points in all.
+  void append_tile(core::Block& out, TileKey key, core::ColumnSet columns, std::uint64_t room) const;
   /// The points at x, y (map metres) that lie in the box and are chosen.
   struct Wanted {
     stages::Box box;
@@ -128,8 +135,9 @@ class TileStore {
     bool operator()(double x, double y) const { return box.holds(x, y) && (!chosen || chosen(x, y)); }
   };
   /// Appends the wanted ones of a tile's points; of chunks without one only places are read. `rows`: gets their numbers within the tile.
+  /// `grown`: gets the block after each chunk of which points were wanted, and may take points out.
   void append_where(core::Block& out, TileKey key, core::ColumnSet columns, const Wanted& wanted,
-                    std::vector<std::uint32_t>* rows = nullptr) const;
+                    std::vector<std::uint32_t>* rows = nullptr, const std::function<void(core::Block&)>& grown = {}) const;
   /// Appends the points of a box: of `tiles` those that are not `own`, none without it.
   void append_around(core::Block& out, const TileBox& tiles, const stages::Box& box, core::ColumnSet columns,
                      const std::function<void(core::Block&)>& thin, const std::function<bool(double, double)>& own) const;
@@ -143,6 +151,7 @@ class TileStore {
   };
   std::map<TileKey, std::vector<Segment>> segments_;
   std::map<TileKey, std::uint64_t> tiles_;
+  std::map<TileKey, stages::Box> extents_;  ///< of the tiles' points
   std::vector<std::pair<std::filesystem::path, core::ColumnSet>> overlays_;
   std::uint64_t points_ = 0;
   size_t source_width_ = 0;

@@ -18,35 +18,14 @@ using core::Column;
 using core::ColumnSet;
 
 constexpr ColumnSet always{Column::x, Column::y, Column::z};
-constexpr double thinned_at_once = 64.0;  // m, whole ones: thin() may keep one point of each square metre
 
-/// The columns `mine` of an overlay's `rows` points.
-void read_overlay(const fs::path& name, Block& to, ColumnSet mine, size_t rows) {
+/// The columns `mine` of an overlay are those of the rows `row` to `end` - 1.
+void read_overlay(const fs::path& name, Block& to, ColumnSet mine, size_t row, size_t end) {
   StoreFile file(name, StoreFile::Mode::read);
-  size_t row = 0;
   ColumnSet seen;
-  while (row <= rows && read_chunk(file, to, row, mine, seen)) {
+  while (row <= end && read_chunk(file, to, row, mine, seen)) {
   }
-  if (row != rows || !(mine - seen).empty()) throw damaged_work(name);
-}
-
-/// Calls f(rows of the chunk, number of the first of them) for each chunk of an overlay of `rows` points from `origin`.
-template <class F>
-void each_chunk(const fs::path& name, const Eigen::Vector3d& origin, ColumnSet mine, size_t rows, F&& f) {
-  StoreFile file(name, StoreFile::Mode::read);
-  for (size_t first = 0;;) {
-    Block part;
-    part.origin = origin;
-    size_t n = 0;
-    ColumnSet seen;
-    if (!read_chunk(file, part, n, mine, seen)) {
-      if (first != rows) throw damaged_work(name);
-      return;
-    }
-    if (!(mine - seen).empty()) throw damaged_work(name);
-    f(part, first, n);
-    first += n;
-  }
+  if (row != end || !(mine - seen).empty()) throw damaged_work(name);
 }
 
 /// The elements at `which` become those of `to` from `at` on.
@@ -56,58 +35,47 @@ void gather(V& to, size_t at, const V& from, const std::vector<std::uint32_t>& w
   for (size_t i = 0; i < which.size(); ++i) to[at + i] = from[which[i]];
 }
 
-/// The columns `mine` of an overlay of `rows` points at the rows `chosen` become those of `out` behind the first `before` points.
-void append_chosen(const fs::path& name, ColumnSet mine, size_t rows, const std::vector<std::uint32_t>& chosen, size_t before, Block& out) {
-  size_t next = 0;
-  std::vector<std::uint32_t> here;
-  each_chunk(name, out.origin, mine, rows, [&](const Block& part, size_t first, size_t n) {
-    here.clear();
-    const size_t at = before + next;
-    for (; next < chosen.size() && chosen[next] < first + n; ++next) here.push_back(chosen[next] - static_cast<std::uint32_t>(first));
-    core::for_each_column([&](Column c, std::string_view, auto member) {
-      if (mine.has(c)) gather(out.*member, at, part.*member, here);
-    });
-  });
-}
-
 }  // namespace
 
-Block TileStore::read(TileKey key, ColumnSet columns) const { return read(key, columns, 0); }
-
-Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
+Block TileStore::read(TileKey key, ColumnSet columns) const {
   Block out;
   out.origin = origin_;
+  append_tile(out, key, columns, 0);
+  return out;
+}
+
+void TileStore::append_tile(Block& out, TileKey key, ColumnSet columns, std::uint64_t room) const {
   const auto at = tiles_.find(key);
-  if (at == tiles_.end()) return out;
+  if (at == tiles_.end()) return;
   columns = columns | always;
   const Overlays overlays = overlays_of(key, columns);
   const ColumnSet from_strips = columns - overlays.columns;
+  const size_t before = out.size();
+  room = std::max(room, before + at->second);
   core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c) && columns_.has(c)) (out.*member).reserve(at->second + more);
+    if (columns.has(c) && columns_.has(c)) (out.*member).reserve(room);
   });
-  if (columns.has(Column::source)) out.source.bytes.reserve((at->second + more) * source_width_);
+  if (columns.has(Column::source)) out.source.bytes.reserve(room * source_width_);
   ColumnSet seen;
-  size_t row = 0;
+  size_t row = before;
   for (const Segment& s : segments_.at(key)) {
     StoreFile file(s.file, StoreFile::Mode::read);
     while (read_chunk(file, out, row, from_strips, seen)) {
     }
   }
-  expect_whole(key, row);
-  for (const auto& [file_name, mine] : overlays.files) {
-    read_overlay(file_name, out, mine, row);
-  }
+  expect_whole(key, row - before);
+  for (const auto& [file_name, mine] : overlays.files) read_overlay(file_name, out, mine, before, row);
   // A column that only some of the strips have is zero in the others.
   core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || overlays.columns.has(c))) (out.*member).resize(row);
+    const bool is_there = (seen.has(c) && from_strips.has(c)) || overlays.columns.has(c) || !(out.*member).empty();
+    if (columns.has(c) && columns_.has(c) && is_there) (out.*member).resize(row);
   });
   if (!out.source.empty()) out.source.resize(row, 0);
-  return out;
 }
 
 namespace {
 
-/// The rows of an overlay one after the other.
+/// The rows of an overlay one after the other; chunks of which none is wanted are not unpacked.
 class OverlayRows {
  public:
   OverlayRows(fs::path name, const Eigen::Vector3d& origin, ColumnSet columns)
@@ -116,29 +84,117 @@ class OverlayRows {
   }
   /// The next `n` rows become those of `to` from `row` on.
   void take(size_t n, Block& to, size_t row) {
-    for (size_t left = n; left > 0;) {
-      if (at_ == rows_) {
-        at_ = rows_ = 0;
-        ColumnSet seen;
-        if (!read_chunk(file_, chunk_, rows_, columns_, seen) || !(columns_ - seen).empty()) throw damaged_work(name_);
-        continue;
-      }
-      const size_t m = std::min(left, rows_ - at_);
-      core::for_each_column([&](Column c, std::string_view, auto member) {
-        if (!columns_.has(c)) return;
-        (to.*member).resize(row + m);
-        std::copy_n((chunk_.*member).data() + at_, m, (to.*member).data() + row);
+    pass(n, [&](size_t, size_t m) {
+      unpack();
+      each_mine(to, [&](auto& column, const auto& mine) {
+        column.resize(row + m);
+        std::copy_n(mine.data() + at_, m, column.data() + row);
       });
-      at_ += m, row += m, left -= m;
-    }
+      row += m;
+    });
+  }
+  /// Of the next `n` rows those that are `chosen`, ascending, become those of `to` from `row` on.
+  void take_chosen(size_t n, const std::vector<std::uint32_t>& chosen, Block& to, size_t row) {
+    auto first = chosen.begin();
+    pass(n, [&](size_t passed, size_t m) {
+      const auto last = std::lower_bound(first, chosen.end(), passed + m);
+      if (first == last) return;
+      unpack();
+      const auto count = static_cast<size_t>(last - first);
+      each_mine(to, [&](auto& column, const auto& mine) {
+        column.resize(row + count);
+        for (size_t i = 0; i < count; ++i) column[row + i] = mine[at_ + first[static_cast<std::ptrdiff_t>(i)] - passed];
+      });
+      row += count;
+      first = last;
+    });
+  }
+  void expect_end() {
+    if (at_ < head_.points) throw damaged_work(name_);
+    next();
+    if (head_.points > 0) throw damaged_work(name_);
   }
 
  private:
+  /// Calls f(rows passed before, rows) for stretches of the next `n` rows, each of them within a chunk.
+  template <class F>
+  void pass(size_t n, F&& f) {
+    for (size_t passed = 0; passed < n;) {
+      if (at_ == head_.points) {
+        next();
+        if (head_.points == 0) throw damaged_work(name_);
+        continue;
+      }
+      const size_t m = std::min<size_t>(n - passed, head_.points - at_);
+      f(passed, m);
+      at_ += m, passed += m;
+    }
+  }
+  /// The head of the next chunk that has points; one without points at the end.
+  void next() {
+    do {
+      if (!is_unpacked_) skip_chunk(file_, head_);
+      at_ = 0;
+      is_unpacked_ = false;
+      head_ = {};
+      if (!file_.next(head_)) {
+        is_unpacked_ = true;
+        return;
+      }
+      if (!(columns_ - head_.set()).empty()) throw damaged_work(name_);
+    } while (head_.points == 0);
+  }
+  void unpack() {
+    if (!is_unpacked_) read_columns(file_, head_, chunk_, 0, columns_);
+    is_unpacked_ = true;
+  }
+  template <class F>
+  void each_mine(Block& to, F&& f) const {
+    core::for_each_column([&](Column c, std::string_view, auto member) {
+      if (columns_.has(c)) f(to.*member, chunk_.*member);
+    });
+  }
+
   fs::path name_;
   ColumnSet columns_;
   StoreFile file_;
   Block chunk_;
-  size_t at_ = 0, rows_ = 0;
+  ChunkHead head_;
+  size_t at_ = 0;
+  bool is_unpacked_ = true;
+};
+
+/// Of a chunk those rows whose places are wanted(x, y), in the block's frame, become the last of `out`; `rows`: their numbers in the chunk.
+class ChosenRows {
+ public:
+  template <class W>
+  void take(StoreFile& file, const ChunkHead& head, ColumnSet columns, const W& wanted, std::vector<std::uint32_t>& rows, Block& out) {
+    const size_t at = out.size(), n = head.points;
+    const ColumnSet there = head.set();
+    core::for_each_column([&](Column c, std::string_view, auto member) {
+      using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
+      if (!there.has(c)) return;
+      // x and y come first and decide which rows are wanted.
+      const bool is_place = c == Column::x || c == Column::y;
+      if (!is_place && (rows.empty() || !columns.has(c))) return file.skip_packed();
+      std::vector<T> own;
+      std::vector<T>* column = &own;
+      if constexpr (std::is_same_v<T, double>) column = c == Column::x ? &x_ : c == Column::y ? &y_ : &other_;
+      column->resize(n);
+      file.read_packed(column->data(), n, sizeof(T));
+      if (c == Column::y) {
+        rows.clear();
+        for (std::uint32_t i = 0; i < n; ++i)
+          if (wanted(x_[i], y_[i])) rows.push_back(i);
+        gather(out.x, at, x_, rows);
+      }
+      if (c != Column::x) gather(out.*member, at, *column, rows);
+    });
+    if (there.has(Column::source)) file.skip_packed();
+  }
+
+ private:
+  std::vector<double> x_, y_, other_;
 };
 
 }  // namespace
@@ -186,64 +242,48 @@ void TileStore::each_rows(TileKey key, ColumnSet columns, const std::function<vo
   expect_whole(key, all);
 }
 
-void TileStore::append_where(Block& out, TileKey key, ColumnSet columns, const Wanted& wanted,
-                             std::vector<std::uint32_t>* rows_of_tile) const {
+void TileStore::append_where(Block& out, TileKey key, ColumnSet columns, const Wanted& wanted, std::vector<std::uint32_t>* rows_of_tile,
+                             const std::function<void(Block&)>& grown) const {
   columns = columns | always;
   const Overlays overlays = overlays_of(key, columns);
   const ColumnSet from_strips = columns - overlays.columns;
-  std::vector<std::uint32_t> chosen, rows;  // within the tile, within the chunk
+  const auto is_wanted = [&](double x, double y) { return wanted(origin_.x() + x, origin_.y() + y); };
+  std::vector<std::uint32_t> rows;  // within the chunk
   // Rows of the files that points came from go to writers, which have no halo.
   if (overlays.columns.has(Column::x) || overlays.columns.has(Column::y) || (columns.has(Column::source) && source_width_ > 0)) {
     const Block all = read(key, columns);
     for (std::uint32_t i = 0; i < all.size(); ++i)
-      if (wanted(origin_.x() + all.x[i], origin_.y() + all.y[i])) rows.push_back(i);
+      if (is_wanted(all.x[i], all.y[i])) rows.push_back(i);
     if (rows_of_tile) *rows_of_tile = rows;
     return core::append(out, all, rows);
   }
-  const size_t before = out.size();
-  size_t row = 0;
-  std::vector<double> x, y;
+  std::list<OverlayRows> rows_of_overlays;
+  for (const auto& [name, mine] : overlays.files) rows_of_overlays.emplace_back(name, origin_, mine);
+  ChosenRows chosen;
+  std::uint32_t row = 0;
   for (const Segment& s : segments_.at(key)) {
     StoreFile file(s.file, StoreFile::Mode::read);
     for (ChunkHead head{}; file.next(head); row += head.points) {
+      const size_t before = out.size();
+      rows.clear();
       if (origin_.x() + head.x1 < wanted.box.x0 || origin_.x() + head.x0 >= wanted.box.x1 || origin_.y() + head.y1 < wanted.box.y0 ||
-          origin_.y() + head.y0 >= wanted.box.y1) {
+          origin_.y() + head.y0 >= wanted.box.y1)
         skip_chunk(file, head);
-        continue;
-      }
-      const size_t at = before + chosen.size(), n = head.points;
-      const ColumnSet there = head.set();
-      core::for_each_column([&](Column c, std::string_view, auto member) {
-        using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
-        if (!there.has(c)) return;
-        // x and y come first and decide which rows are wanted.
-        const bool is_place = c == Column::x || c == Column::y;
-        if (!is_place && (rows.empty() || !from_strips.has(c))) return file.skip_packed();
-        std::vector<T> own;
-        std::vector<T>* column = &own;
-        if constexpr (std::is_same_v<T, double>) column = c == Column::x ? &x : c == Column::y ? &y : &own;
-        column->resize(n);
-        file.read_packed(column->data(), n, sizeof(T));
-        if (c == Column::y) {
-          rows.clear();
-          for (std::uint32_t i = 0; i < n; ++i)
-            if (wanted(origin_.x() + x[i], origin_.y() + y[i])) rows.push_back(i);
-          gather(out.x, at, x, rows);
-        }
-        if (c != Column::x) gather(out.*member, at, *column, rows);
+      else
+        chosen.take(file, head, from_strips, is_wanted, rows, out);
+      for (OverlayRows& o : rows_of_overlays) o.take_chosen(head.points, rows, out, before);
+      if (rows.empty()) continue;
+      // A column that only some of the points have is zero in the others.
+      core::for_each_column([&](Column, std::string_view, auto member) {
+        if (!(out.*member).empty()) (out.*member).resize(out.size());
       });
-      if (there.has(Column::source)) file.skip_packed();
-      for (const std::uint32_t i : rows) chosen.push_back(static_cast<std::uint32_t>(row) + i);
+      if (rows_of_tile)
+        for (const std::uint32_t i : rows) rows_of_tile->push_back(row + i);
+      if (grown) grown(out);
     }
   }
   expect_whole(key, row);
-  for (const auto& [file_name, mine] : overlays.files)
-    if (!chosen.empty()) append_chosen(file_name, mine, row, chosen, before, out);
-  // A column that only some of the points have is zero in the others.
-  core::for_each_column([&](Column, std::string_view, auto member) {
-    if (!(out.*member).empty()) (out.*member).resize(out.size());
-  });
-  if (rows_of_tile) *rows_of_tile = std::move(chosen);
+  for (OverlayRows& o : rows_of_overlays) o.expect_end();
 }
 
 void TileStore::append_around(Block& out, const TileBox& tiles, const stages::Box& box, ColumnSet columns,
@@ -259,31 +299,30 @@ void TileStore::append_around(Block& out, const TileBox& tiles, const stages::Bo
         append_where(out, {ix, iy}, columns, wanted);
         continue;
       }
-      // Thinned in stripes: few of the points are there before they are thinned.
-      const double south = std::max(box.y0, iy * side_), north = std::min(box.y1, (iy + 1) * side_);
-      for (double y = std::floor(south / thinned_at_once) * thinned_at_once; y < north; y += thinned_at_once) {
-        wanted.box.y0 = y <= iy * side_ ? box.y0 : std::max(box.y0, y);
-        wanted.box.y1 = y + thinned_at_once >= (iy + 1) * side_ ? box.y1 : std::min(box.y1, y + thinned_at_once);
-        Block part;
-        part.origin = origin_;
-        append_where(part, {ix, iy}, columns, wanted);
-        if (part.size() == 0) continue;
-        thin(part);
-        core::append(out, part);
-      }
+      // Thinned again and again as it is read: few of the points are there at a time.
+      Block part;
+      part.origin = origin_;
+      size_t most = thinned_at_once;
+      append_where(part, {ix, iy}, columns, wanted, nullptr, [&](Block& b) {
+        if (b.size() < most) return;
+        thin(b);
+        most = b.size() + thinned_at_once;
+      });
+      if (part.size() == 0) continue;
+      thin(part);
+      core::append(out, part);
     }
 }
 
 Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, ColumnSet columns, size_t& own,
                                 const std::function<void(Block&)>& thin, std::uint64_t rows) const {
   const TileBox tiles(keys);
-  size_t more = 0;
+  Block out;
+  out.origin = origin_;
+  std::uint64_t of_tiles = 0;
   for (const TileKey k : keys)
-    if (const auto at = tiles_.find(k); at != tiles_.end()) more += at->second;
-  if (const auto at = tiles_.find(keys[0]); at != tiles_.end()) more -= at->second;
-  more = std::max<size_t>(more, rows);
-  Block out = read(keys[0], columns, more);
-  for (size_t k = 1; k < keys.size(); ++k) core::append(out, read(keys[k], columns));
+    if (const auto at = tiles_.find(k); at != tiles_.end()) of_tiles += at->second;
+  for (const TileKey k : keys) append_tile(out, k, columns, std::max(of_tiles, rows));
   own = out.size();
   if (halo > 0.0) append_around(out, tiles, tiles.metres(side_).grown(halo), columns, thin, {});
   return out;

@@ -88,6 +88,8 @@ struct Raster {
   double bytes = 0.0;             ///< of working memory per cell
   double cells_per_point = 0.0;   ///< most cells that a point makes, where only those are kept; 0: every cell is there
   std::string_view widened_by{};  ///< option of the stage that makes the square wider than the tile; empty where none does
+  /// m: of the square there is only what the points' box covers with so much around it; infinite: all of it.
+  double rim = std::numeric_limits<double>::infinity();
 
   /// Bytes, where `points` are worked on.
   double total(double points) const {
@@ -101,6 +103,7 @@ struct TileMemory {
   double bytes_per_point = 64.0;  ///< of tile and near halo
   std::vector<Raster> rasters{};  ///< needed however few points there are
   double share_of_points = 1.0;   ///< that those bytes are for: less than 1 where a stage leaves the halo's far points out
+  double bytes_per_own = 0.0;     ///< more of the tile's own points, once the rasters that have a rim are gone
 };
 
 class Stage;

@@ -117,6 +117,8 @@ std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, Ground
 
 double halo(const GroundOptions& o) { return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + judged_around()); }
 
+double rim(const GroundOptions& o) { return (coarse_ground_rim(surface_options(o)) + 1) * ground_cell; }
+
 double near_halo(const GroundOptions&) { return std::ceil(judged_around() + (fine_surface_reach() + 1) * ground_cell); }
 
 std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& tile, const GroundOptions& o) {

@@ -70,6 +70,9 @@ double halo(const GroundOptions& o);
 /// Metres within which it depends on all of them; farther off on the lowest that may be ground of each cell of 1 m alone.
 double near_halo(const GroundOptions& o);
 
+/// Metres around the outermost points that the rasters at work go on.
+double rim(const GroundOptions& o);
+
 /// A box of map coordinates, half open.
 struct Bounds {
   double west, south, east, north;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "filters/bins.h"
 #include "filters/ground/moving_planes.h"
@@ -58,7 +59,51 @@ double tolerable(const GroundEvidence& e, double above, double spread, double sp
   return most;
 }
 
-NearestReturns nearest_of(const Bins& bins, const core::Block& b, const std::vector<float>& above, size_t p, double slope) {
+/// Returns over the surface by cells of 1 m, those in the lattice `within` alone.
+class SurfaceReturns {
+ public:
+  struct Return {
+    double x, y;  ///< as in the block
+    float above;
+    std::uint32_t row;
+  };
+
+  SurfaceReturns(const core::Block& b, const std::vector<float>& above, const core::Lattice& within)
+      : lattice_(lattice_around(b, 1.0, 0)), start_(lattice_.size() + 1, 0) {
+    each(b, above, within, [&](size_t, size_t c) { ++start_[c + 1]; });
+    for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+    returns_.resize(start_.back());
+    each(b, above, within, [&](size_t p, size_t c) { returns_[start_[c]++] = {b.x[p], b.y[p], above[p], static_cast<std::uint32_t>(p)}; });
+    std::rotate(start_.begin(), start_.end() - 1, start_.end());  // each has become the next one's
+    start_[0] = 0;
+  }
+
+  const core::Lattice& lattice() const { return lattice_; }
+  std::span<const Return> in(int i, int j) const {
+    const size_t c = lattice_.at(i, j);
+    return {returns_.data() + start_[c], start_[c + 1] - start_[c]};
+  }
+
+ private:
+  template <class Take>
+  void each(const core::Block& b, const std::vector<float>& above, const core::Lattice& within, const Take& take) const {
+    constexpr size_t together = 1024;
+    std::array<std::int32_t, together> column{}, row{}, i{}, j{};
+    for (size_t first = 0; first < b.size(); first += together) {
+      const size_t n = std::min(together, b.size() - first);
+      cells_of(within, b, first, n, column.data(), row.data());
+      cells_of(lattice_, b, first, n, i.data(), j.data());
+      for (size_t k = 0; k < n; ++k)
+        if (!std::isnan(above[first + k]) && within.holds(column[k], row[k])) take(first + k, lattice_.at(i[k], j[k]));
+    }
+  }
+
+  core::Lattice lattice_;
+  std::vector<std::uint32_t> start_;
+  std::vector<Return> returns_;
+};
+
+NearestReturns nearest_of(const SurfaceReturns& returns, const core::Block& b, const std::vector<float>& above, size_t p, double slope) {
   struct Found {
     double square;
     float above;
@@ -66,15 +111,13 @@ NearestReturns nearest_of(const Bins& bins, const core::Block& b, const std::vec
   };
   std::array<Found, nearest_count> best{};
   size_t n = 0;
-  const CellIndex at = cell_of(bins.lattice(), b, p);
+  const CellIndex at = cell_of(returns.lattice(), b, p);
   const auto visit = [&](int i, int j) {
-    if (!bins.lattice().holds(i, j)) return;
-    const auto points = bins.in(i, j);
-    const auto rows = bins.rows(i, j);
-    for (size_t k = 0; k < points.size(); ++k) {
-      if (rows[k] == p) continue;
-      const double dx = points[k].x - b.x[p], dy = points[k].y - b.y[p];
-      const Found f{dx * dx + dy * dy, above[rows[k]]};
+    if (!returns.lattice().holds(i, j)) return;
+    for (const SurfaceReturns::Return& near : returns.in(i, j)) {
+      if (near.row == p) continue;
+      const double dx = near.x - b.x[p], dy = near.y - b.y[p];
+      const Found f{dx * dx + dy * dy, near.above};
       if (n == nearest_count && !(f < best[n - 1])) continue;
       size_t to = n < nearest_count ? n++ : n - 1;
       for (; to > 0 && f < best[to - 1]; --to) best[to] = best[to - 1];
@@ -199,11 +242,7 @@ void look_around(const core::Block& b, const std::vector<float>& above, std::vec
   }
   all = blur(all, split_sigma);
   split = blur(split, split_sigma);
-  const Bins bins(b, 1.0, 0, [&](size_t p) {
-    if (std::isnan(above[p])) return false;
-    const CellIndex at = cell_of(l, b, p);
-    return all.holds(at.i, at.j);
-  });
+  const SurfaceReturns returns(b, above, l);
   for (size_t p = 0; p < own; ++p) {
     GroundEvidence& e = evidence[p];
     if (std::isnan(e.above)) continue;
@@ -211,7 +250,7 @@ void look_around(const core::Block& b, const std::vector<float>& above, std::vec
     const size_t c = l.at(at.i, at.j);
     e.splitting = all.value[c] > 0 ? split.value[c] / all.value[c] : 0.0F;
     const bool doubtful = (e.chance < certain || std::abs(e.above) > close) && std::abs(e.above) <= far;
-    if (doubtful) e.nearest = nearest_of(bins, b, above, p, e.slope);
+    if (doubtful) e.nearest = nearest_of(returns, b, above, p, e.slope);
   }
 }
 

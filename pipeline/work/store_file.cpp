@@ -157,11 +157,8 @@ void read_source(StoreFile& file, const ChunkHead& head, bool wanted, core::Byte
 
 }  // namespace
 
-bool read_chunk(StoreFile& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet& seen) {
-  ChunkHead head{};
-  if (!file.next(head)) return false;
+void read_columns(StoreFile& file, const ChunkHead& head, Block& to, size_t row, ColumnSet wanted) {
   const ColumnSet there = head.set();
-  seen = seen | there;
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (!there.has(c)) return;
     if (!wanted.has(c)) return file.skip_packed();
@@ -170,6 +167,13 @@ bool read_chunk(StoreFile& file, Block& to, size_t& row, ColumnSet wanted, Colum
     file.read_packed(column.data() + row, head.points, sizeof column[0]);
   });
   if (there.has(Column::source)) read_source(file, head, wanted.has(Column::source), to.source, row);
+}
+
+bool read_chunk(StoreFile& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet& seen) {
+  ChunkHead head{};
+  if (!file.next(head)) return false;
+  seen = seen | head.set();
+  read_columns(file, head, to, row, wanted);
   row += head.points;
   return true;
 }

@@ -62,6 +62,8 @@ void write_chunks(StoreFile& file, const core::Block& block, size_t first, size_
 /// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file. `seen`: gets the chunk's columns.
 bool read_chunk(StoreFile& file, core::Block& to, size_t& row, core::ColumnSet wanted, core::ColumnSet& seen);
 
+/// The wanted columns behind a head become those of `to` from row `row` on; it grows where it has fewer rows.
+void read_columns(StoreFile& file, const ChunkHead& head, core::Block& to, size_t row, core::ColumnSet wanted);
 /// Passes over the columns behind a head.
 void skip_chunk(StoreFile& file, const ChunkHead& head);
 

@@ -54,6 +54,20 @@ TEST(StageMemory, ATileThatDoesNotFitIsCutUntilItDoesAndItsPartsHoldWhatWasCount
   EXPECT_LE(least.bytes, cut.bytes);
 }
 
+TEST(StageMemory, RastersAroundThePointsReachNoFartherThanThey) {
+  const Dense d;
+  const io::Survey survey;
+  stages::Context context{survey};
+  context.tile_side = side;
+  const auto stage = stages::make_stage("filters.ground");
+  const StageMemory memory(d.store, *stage, context);
+  const TileGroup whole = memory.of({{0, 0}});
+  EXPECT_EQ(whole.own, d.store.tiles().at({0, 0}));
+  // 52 bytes per square metre of the halo alone would be more than this.
+  const double across = side + 2.0 * stage->halo();
+  EXPECT_LT(static_cast<double>(whole.bytes), 52.0 * across * across);
+}
+
 TEST(StageMemory, AStageThatDoesNotDivideTilesIsNotCut) {
   const Dense d;
   const io::Survey survey;

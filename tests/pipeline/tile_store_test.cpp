@@ -236,7 +236,7 @@ TEST(TileStore, AStageMayTakePointsOutOfTheHalo) {
     part = core::select(part, rows);
   });
   EXPECT_EQ(thinned_own, own);
-  // Those around come in stripes: their order may be another.
+  // Their order may be another.
   std::multiset<std::pair<std::uint32_t, double>> expected, thinned;
   for (size_t i = own; i < all.size(); ++i)
     if (all.record[i] % 2 == 0) expected.insert({all.record[i], all.x[i]});

@@ -157,7 +157,9 @@ Taken take(const Case& c, double side, double spacing) {
   for (size_t p = 0; p < job.block.size(); ++p) near += around.holds(job.block.x[p], job.block.y[p]);
   const TileMemory declared = stage->memory(context);
   Taken t{0.0, declared.bytes_per_point * declared.share_of_points * static_cast<double>(near), job.block.size()};
-  for (const Raster& r : declared.rasters) t.declared += r.total(static_cast<double>(job.block.size()));
+  double first = 0.0;
+  for (const Raster& r : declared.rasters) (std::isfinite(r.rim) ? first : t.declared) += r.total(static_cast<double>(job.block.size()));
+  t.declared += std::max(first, declared.bytes_per_own * static_cast<double>(job.own));
   if (c.type == "filters.visibility") {  // the stage itself wants a trajectory
     filters::VisibilityOptions o;
     std::vector<core::Fault> none;
