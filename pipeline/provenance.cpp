@@ -10,6 +10,8 @@
 #include <set>
 
 #include "core/geo/proj_grids.h"
+#include "io/store/address.h"
+#include "io/store/input_file.h"
 #include "io/survey/versions.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
@@ -56,6 +58,14 @@ std::vector<std::filesystem::path> grids_of(const Plan& plan) {
   return {out.begin(), out.end()};
 }
 
+Input input_of(const std::filesystem::path& file) {
+  if (io::is_address(file)) return {file, io::InputFile(file).size(), checksum_of_input(file)};
+  std::error_code ec;
+  const auto bytes = std::filesystem::file_size(file, ec);
+  if (ec) io::throw_system_error("cannot open", file, ec.value());
+  return {file, bytes, checksum_of_input(file)};
+}
+
 }  // namespace
 
 std::vector<Input> inputs_of(const Plan& plan) {
@@ -63,10 +73,7 @@ std::vector<Input> inputs_of(const Plan& plan) {
   std::set<std::filesystem::path> known;
   const auto add = [&](const std::filesystem::path& file) {
     if (!known.insert(file).second) return false;
-    std::error_code ec;
-    const auto bytes = std::filesystem::file_size(file, ec);
-    if (ec) io::throw_system_error("cannot open", file, ec.value());
-    out.push_back({file, bytes, checksum_of_file(file)});
+    out.push_back(input_of(file));
     return true;
   };
   for (const PlannedStage& s : plan.stages)

@@ -5,6 +5,8 @@
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/printable.h"
+#include "io/store/address.h"
+#include "io/store/input_file.h"
 #include "pipeline/describe.h"
 #include "pipeline/flight_plan/plan_files.h"
 #include "pipeline/input_guard.h"
@@ -76,6 +78,8 @@ int check(const Given& a) {
   }
   const pipeline::Plan plan = pipeline::make_plan(a.request);
   if (!plan.survey_file.empty()) pipeline::check_output(plan);
+  for (const io::PointFile& f : plan.survey.points)
+    if (io::is_address(f.file)) io::InputFile{f.file};  // opens it
   if (a.loudness.quiet) return 0;
   std::printf(
       "%s: %s\n", a.request.config.c_str(),

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 
 #include "core/error.h"
 #include "io/las/las_bytes.h"
+#include "io/store/input_file.h"
 #include "io/text/output_file.h"
 
 namespace swath::io {
@@ -76,10 +76,7 @@ class PageWriter {
 
 class PageReader {
  public:
-  PageReader(const std::filesystem::path& file, const LasHeader& header)
-      : file_(file), header_(header), size_(std::filesystem::file_size(file)), in_(file, std::ios::binary) {
-    if (!in_) throw_system_error("cannot read", file, errno);
-  }
+  PageReader(const std::filesystem::path& file, const LasHeader& header) : file_(file), header_(header), in_(file), size_(in_.size()) {}
 
   void read(std::uint64_t at, std::uint64_t size) {
     if (at < header_.offset_to_points || at > size_ || size > size_ - at || size == 0 || size % entry_bytes != 0)
@@ -88,9 +85,7 @@ class PageReader {
              file_, at);
     if (!pages_.insert(at).second) broken("a page is listed twice", file_, at);
     std::vector<std::uint8_t> page(size);
-    in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(reinterpret_cast<char*>(page.data()), static_cast<std::streamsize>(size)))
-      throw_system_error("cannot read", file_, errno);
+    if (in_.read_some(at, page.data(), size) < size) throw_system_error("cannot read", file_, EIO);
     for (std::size_t i = 0; i < size; i += entry_bytes) entry(&page[i], at + i);
   }
 
@@ -134,8 +129,8 @@ class PageReader {
 
   std::filesystem::path file_;
   const LasHeader& header_;
+  InputFile in_;
   std::uint64_t size_;
-  std::ifstream in_;
   std::set<std::uint64_t> pages_;
   std::map<OctreeKey, std::uint64_t> keys_;  ///< with the byte that lists them
   std::vector<CopcNode> nodes_;

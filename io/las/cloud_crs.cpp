@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/geo/same_map.h"
 #include "io/las/las_crs.h"
+#include "io/store/address.h"
 
 namespace swath::io {
 namespace {
@@ -59,6 +60,7 @@ core::Crs run_crs(const Survey& survey) { return survey.crs.empty() ? cloud_crs(
 CrsBeside crs_beside(const fs::path& cloud) {
   for (const char* ending : {".prj", ".PRJ"}) {
     const fs::path file = fs::path(cloud).replace_extension(ending);
+    if (is_address(file)) return {};  // the survey does not name it
     std::ifstream in(file, std::ios::binary);
     std::string text(longest_prj, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -17,6 +17,7 @@
 #include "core/time.h"
 #include "io/copc/copc_hierarchy.h"
 #include "io/las/las_reader.h"
+#include "io/store/address.h"
 #include "io/survey/file_facts.h"
 
 namespace swath::io {
@@ -131,18 +132,20 @@ struct LasFacts {
   std::optional<LasTimes> time;
   std::vector<std::string> warnings;
   std::optional<CopcFacts> copc{};
+  bool is_whole = true;  ///< false: the points were not read
 };
 template <class V>
 void describe(const LasFacts& r, V& v) {
   const LasHeader& h = r.h;
-  const core::Form where_any = core::Form{}.only_if(r.s.points > 0);
+  const bool any = r.is_whole && r.s.points > 0;
+  const core::Form where_any = core::Form{}.only_if(any);
   const double area = r.s.points > 0 ? covered_area(r.s) : 0.0;
   std::vector<std::string> extras;
   for (const LasExtra& e : h.extras) extras.push_back(e.name);
   v.result("format", std::string(r.copc ? "COPC (LAZ)" : h.compressed ? "LAZ" : "LAS"), "Format.");
   v.result("version", std::to_string(h.version_major) + "." + std::to_string(h.version_minor), "Version of LAS.");
   v.result("point_format", h.point_format, "Point format.");
-  v.result("points", r.s.points, "Points.");
+  v.result("points", r.is_whole ? r.s.points : h.point_count, "Points.");
   v.result("system", h.system_identifier, "System that the header names.");
   v.result("software", h.generating_software, "Software that the header names.");
   v.result("created", std::to_string(h.creation_year) + ", day " + std::to_string(h.creation_day),
@@ -154,22 +157,23 @@ void describe(const LasFacts& r, V& v) {
   v.result("z", r.s.xyz[2], "Smallest and largest z.");
   v.table("time", r.time, "GPS times of the points.");
   v.table("copc", r.copc, "Octree of a COPC file.");
-  v.tables_if(r.s.points > 0, "returns", core::counts_of(r.s.by_return), "Points by their return number.");
-  v.tables_if(r.s.points > 0, "returns_per_pulse", core::counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
-  v.tables_if(r.s.points > 0, "classes", core::counts_of(r.s.classes), "Points by their ASPRS class.");
-  v.tables_if(r.s.points > 0, "lines", core::counts_of(r.s.lines), "Points by their point source id.");
-  v.result("scan_angle_deg", r.s.angle, "Smallest and largest scan angle.");
+  v.tables_if(any || !r.s.by_return.empty(), "returns", core::counts_of(r.s.by_return), "Points by their return number.");
+  v.tables_if(any, "returns_per_pulse", core::counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
+  v.tables_if(any, "classes", core::counts_of(r.s.classes), "Points by their ASPRS class.");
+  v.tables_if(any, "lines", core::counts_of(r.s.lines), "Points by their point source id.");
+  v.result("scan_angle_deg", r.s.angle, core::Form{}.only_if(r.is_whole), "Smallest and largest scan angle.");
   v.result("withheld", r.s.withheld, core::if_any(), "Points flagged as withheld.");
   v.result("overlap", r.s.overlap, core::if_any(), "Points flagged as overlap.");
   v.result("covered_area", area, where_any, "Area of the cells that hold a point: 2 units wide, or wider until they hold 4 in the mean.");
   v.result("points_per_square_unit", static_cast<double>(r.s.points) / area, where_any, "Points per square unit of that area.");
   v.result("first_returns_per_square_unit", static_cast<double>(r.s.first_returns) / area, where_any, "First returns per square unit.");
-  v.result("extra_fields", extras, core::Form{}.only_if(!extras.empty() && r.s.points > 0), "Names of the extra fields.");
+  v.result("extra_fields", extras, core::Form{}.only_if(!extras.empty() && (any || !r.is_whole)), "Names of the extra fields.");
+  v.result("read", std::string("header alone: times, classes, lines and density need all points, fetch the file for them"),
+           core::Form{}.only_if(!r.is_whole), "What of an object in a store was read.");
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 
-void find_crs(const LasReader& reader, LasFacts& out) {
-  const LasCrs crs = reader.crs();
+void find_crs(const LasCrs& crs, LasFacts& out) {
   if (!crs.note.empty()) out.warnings.push_back(crs.note);
   if (crs.definition.empty()) return out.warnings.push_back("the file states no CRS");
   try {
@@ -257,15 +261,34 @@ void find_octree(const std::filesystem::path& file, LasFacts& out) {
   }
 }
 
+/// An object of a store by its header and the pages of its octree: its points may be gigabytes away.
+core::Value describe_stored(const std::filesystem::path& address) {
+  std::vector<std::string> warnings;
+  const LasHeader h = read_las_header(address, warnings);
+  Sums stated;
+  for (size_t k = 0; k < 3 && h.point_count > 0; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    for (const double at : {h.min[axis], h.max[axis]}) stated.xyz[k].add(at);
+  }
+  for (size_t r = 0; r < h.by_return.size(); ++r)
+    if (h.by_return[r] > 0) stated.by_return[static_cast<int>(r) + 1] = h.by_return[r];
+  LasFacts out{h, stated, {}, {}, std::move(warnings), {}, false};
+  find_crs(las_crs(h), out);
+  find_octree(address, out);
+  if (h.point_count == 0) out.warnings.push_back("the file has no points");
+  return core::reported(out);
+}
+
 }  // namespace
 
 core::Value describe_las(const std::filesystem::path& file) {
+  if (is_address(file)) return describe_stored(file);
   LasReader reader(file);
   Sums s;
   LasPoints points;
   while (reader.read(points, batch) > 0) s.add(points);
   LasFacts out{reader.header(), s, {}, {}, reader.warnings()};
-  find_crs(reader, out);
+  find_crs(reader.crs(), out);
   find_octree(file, out);
   if (s.points == 0) {
     out.warnings.push_back("the file has no points");

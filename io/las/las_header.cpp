@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +13,7 @@
 #include "core/error.h"
 #include "io/las/las_bytes.h"
 #include "io/las/other_cloud.h"
+#include "io/store/input_file.h"
 #include "io/text/output_file.h"
 
 namespace swath::io {
@@ -35,26 +35,19 @@ std::string at_byte(const std::filesystem::path& file, std::uint64_t byte) { ret
 /// Reads parts of one file; a part that is not there is an error that names what is cut.
 class Input {
  public:
-  explicit Input(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
-    if (!in_ || std::filesystem::is_directory(file)) throw_system_error("cannot read", file, errno ? errno : EISDIR);
-    in_.seekg(0, std::ios::end);
-    size_ = static_cast<std::uint64_t>(in_.tellg());
-  }
-  std::uint64_t size() const { return size_; }
+  explicit Input(const std::filesystem::path& file) : in_(file) {}
+  std::uint64_t size() const { return in_.size(); }
   std::vector<std::uint8_t> read(std::uint64_t at, std::uint64_t n, const std::string& what) {
-    if (at > size_ || n > size_ - at)
-      throw core::Error(what + " is cut off: the file ends at byte " + std::to_string(size_), at_byte(file_, at),
+    if (at > size() || n > size() - at)
+      throw core::Error(what + " is cut off: the file ends at byte " + std::to_string(size()), at_byte(in_.path(), at),
                         "the file is truncated or damaged: fetch or export it again");
     std::vector<std::uint8_t> out(n);
-    in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(n))) throw_system_error("cannot read", file_, errno);
+    if (in_.read_some(at, out.data(), n) < n) throw_system_error("cannot read", in_.path(), EIO);
     return out;
   }
 
  private:
-  std::filesystem::path file_;
-  std::ifstream in_;
-  std::uint64_t size_ = 0;
+  InputFile in_;
 };
 
 LasVlr parse_vlr_head(const std::uint8_t* b, bool extended) {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <fstream>
+#include <exception>
 
 #include "core/error.h"
 #include "io/las/las_source.h"
 #include "io/laz/swath_laz.h"
-#include "io/text/output_file.h"
+#include "io/store/address.h"
+#include "io/store/input_file.h"
 
 namespace swath::io {
 
@@ -49,6 +49,24 @@ void clear_unread(std::uint32_t fields, LasPoints& p) {
   without(SWATH_LAZ_FIELD_EXTRA, p.extra);
 }
 
+/// Gives the LASzip streams the bytes of an object, and keeps why it could not.
+struct LazBytes {
+  explicit LazBytes(const std::filesystem::path& address) : in(address) {}
+  static int read(void* self, std::uint64_t at, std::uint8_t* to, std::size_t n) {
+    auto& bytes = *static_cast<LazBytes*>(self);
+    try {
+      return bytes.in.read_some(at, to, n) == n ? 0 : 1;
+    } catch (...) {  // no exception may cross the border
+      bytes.fault = std::current_exception();
+      return 1;
+    }
+  }
+  swath_laz_source source() { return {this, in.size(), &LazBytes::read}; }
+
+  InputFile in;
+  std::exception_ptr fault;
+};
+
 struct CloseLaz {
   void operator()(swath_laz_reader* r) const { swath_laz_reader_close(r); }
 };
@@ -59,7 +77,8 @@ struct LasReader::State {
   std::filesystem::path file;
   LasHeader header;
   std::vector<std::string> warnings;
-  std::ifstream in;
+  std::optional<InputFile> in;      ///< of records that are not compressed
+  std::unique_ptr<LazBytes> bytes;  ///< of an object with compressed ones
   std::unique_ptr<swath_laz_reader, CloseLaz> laz;
   std::uint64_t position = 0;
   LasBox box;
@@ -76,6 +95,7 @@ struct LasReader::State {
 
   void laz_check(int code, const std::array<char, 512>& message, std::uint64_t byte) const {
     if (code == SWATH_LAZ_OK) return;
+    if (bytes && bytes->fault) std::rethrow_exception(bytes->fault);
     const std::string place = code == SWATH_LAZ_DATA || code == SWATH_LAZ_PANIC
                                   ? ": point data from byte " + std::to_string(byte) + ", points " + std::to_string(position) + " and on"
                                   : "";
@@ -99,23 +119,24 @@ struct LasReader::State {
 
   void open(const LasPart& part, unsigned threads) {
     if (!header.compressed) {
-      in.open(file, std::ios::binary);
-      in.seekg(header.offset_to_points);
-      if (!in) throw_system_error("cannot read", file, errno);
+      in.emplace(file);
       return;
     }
     std::array<char, 512> message{};
     swath_laz_reader* opened = nullptr;
     const auto format = static_cast<std::uint8_t>(header.point_format);
+    if (is_address(file)) bytes = std::make_unique<LazBytes>(file);
+    const swath_laz_source source = bytes ? bytes->source() : swath_laz_source{};
+    const swath_laz_source* from = bytes ? &source : nullptr;
     int code = 0;
     if (part.chunks) {
       std::vector<std::uint64_t> offsets, bytes, counts;
       for (const LasChunk& c : *part.chunks) offsets.push_back(c.offset), bytes.push_back(c.bytes), counts.push_back(c.points);
-      code = swath_laz_reader_open_chunks(file.c_str(), header.laszip.data(), header.laszip.size(), format, header.record_length,
+      code = swath_laz_reader_open_chunks(file.c_str(), from, header.laszip.data(), header.laszip.size(), format, header.record_length,
                                           offsets.data(), bytes.data(), counts.data(), offsets.size(), threads, &opened, message.data(),
                                           message.size());
     } else {
-      code = swath_laz_reader_open(file.c_str(), header.offset_to_points, header.laszip.data(), header.laszip.size(), format,
+      code = swath_laz_reader_open(file.c_str(), from, header.offset_to_points, header.laszip.data(), header.laszip.size(), format,
                                    header.record_length, header.point_count, threads, &opened, message.data(), message.size());
     }
     laz.reset(opened);
@@ -130,7 +151,7 @@ struct LasReader::State {
     if (laz) {
       std::array<char, 512> message{};
       laz_check(swath_laz_reader_read(laz.get(), records.data(), n, message.data(), message.size()), message, header.offset_to_points);
-    } else if (!in.read(reinterpret_cast<char*>(records.data()), static_cast<std::streamsize>(records.size()))) {
+    } else if (in->read_some(header.offset_to_points + record() * header.record_length, records.data(), records.size()) < records.size()) {
       throw core::Error("the points are cut off", file.string() + ": point " + std::to_string(position),
                         "the file changed while it was read, or its disk fails");
     }

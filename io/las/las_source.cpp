@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
@@ -16,6 +15,7 @@
 #include "io/las/las_block.h"
 #include "io/las/las_bytes.h"
 #include "io/las/las_recode.h"
+#include "io/store/input_file.h"
 
 namespace swath::io {
 
@@ -83,10 +83,9 @@ core::ColumnSet columns_in(const LasHeader& h) {
 /// Data that read_las_header() left in the file.
 void load(LasVlr& v, const std::filesystem::path& file) {
   if (v.data.size() == v.size) return;
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   v.data.resize(v.size);
-  in.seekg(static_cast<std::streamoff>(v.offset));
-  if (!in.read(reinterpret_cast<char*>(v.data.data()), static_cast<std::streamsize>(v.size)))
+  if (in.read_some(v.offset, v.data.data(), v.size) < v.size)
     throw core::Error("the record " + v.user_id + " " + std::to_string(v.record_id) + " is cut off",
                       file.string() + ": byte " + std::to_string(v.offset), "the file changed while it was read, or its disk fails");
 }

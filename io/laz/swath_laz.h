@@ -39,15 +39,24 @@ typedef struct swath_laz_writer swath_laz_writer;
 int swath_laz_vlr(uint8_t point_format, uint16_t extra_bytes, uint32_t chunk_points, uint8_t* out, size_t capacity, size_t* size,
                   char* message, size_t message_capacity);
 
-/* Opens the points of a file. `data_start`: offset to point data; `vlr`: record data of the laszip VLR. The chunk table is
- * read and held against the file's size and `point_count`. */
-int swath_laz_reader_open(const char* path, uint64_t data_start, const uint8_t* vlr, size_t vlr_size, uint8_t point_format,
-                          uint16_t record_length, uint64_t point_count, uint32_t threads, swath_laz_reader** reader, char* message,
-                          size_t message_capacity);
+/* Bytes that the caller reads: `read` fills `to` with n bytes from byte `at` and returns 0, or something else where it cannot. It is called
+ * in the thread of the reader's caller and never beyond `size`; `context` must outlive the reader. */
+typedef struct {
+  void* context;
+  uint64_t size;
+  int (*read)(void* context, uint64_t at, uint8_t* to, size_t n);
+} swath_laz_source;
+
+/* Opens the points of `source`, or where that is NULL of the file `path`. `data_start`: offset to point data; `vlr`: record data of the
+ * laszip VLR. The chunk table is read and held against the file's size and `point_count`. */
+int swath_laz_reader_open(const char* path, const swath_laz_source* source, uint64_t data_start, const uint8_t* vlr, size_t vlr_size,
+                          uint8_t point_format, uint16_t record_length, uint64_t point_count, uint32_t threads, swath_laz_reader** reader,
+                          char* message, size_t message_capacity);
 /* The same for some chunks of a file of layered chunks or of chunks of variable size: those at these offsets, one after the other. */
-int swath_laz_reader_open_chunks(const char* path, const uint8_t* vlr, size_t vlr_size, uint8_t point_format, uint16_t record_length,
-                                 const uint64_t* offsets, const uint64_t* bytes, const uint64_t* points, size_t chunks, uint32_t threads,
-                                 swath_laz_reader** reader, char* message, size_t message_capacity);
+int swath_laz_reader_open_chunks(const char* path, const swath_laz_source* source, const uint8_t* vlr, size_t vlr_size,
+                                 uint8_t point_format, uint16_t record_length, const uint64_t* offsets, const uint64_t* bytes,
+                                 const uint64_t* points, size_t chunks, uint32_t threads, swath_laz_reader** reader, char* message,
+                                 size_t message_capacity);
 /* Fields that are decompressed, a sum of SWATH_LAZ_FIELD_*; x, y, return numbers and scanner channel always are. Others hold what the first
  * record of the chunk has. To be called before the first read; without effect in point formats 0 to 5, whose records are one stream. */
 void swath_laz_reader_select(swath_laz_reader* reader, uint32_t fields);

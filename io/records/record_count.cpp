@@ -7,14 +7,14 @@
 
 #include "io/las/las_header.h"
 #include "io/records/csd.h"
-#include "io/text/binary_file.h"
+#include "io/store/input_file.h"
 #include "io/text/npy.h"
 
 namespace swath::io {
 
 std::optional<std::uint64_t> stated_records(const std::filesystem::path& file) {
   std::string start(6, ' ');
-  start.resize(BinaryFile(file).read_some(0, start.data(), start.size()));
+  start.resize(InputFile(file).read_some(0, start.data(), start.size()));
   if (start.starts_with("LASF")) {
     std::vector<std::string> ignored;
     return read_las_header(file, ignored).point_count;

@@ -25,6 +25,8 @@
 #include "io/records/describe_pcap.h"
 #include "io/records/describe_trajectory.h"
 #include "io/records/event_marks.h"
+#include "io/store/address.h"
+#include "io/store/input_file.h"
 #include "io/survey/describe_tables.h"
 #include "io/survey/file_facts.h"
 #include "io/survey/read_survey.h"
@@ -49,7 +51,7 @@ template <class V>
 void describe(const SurveyFacts& r, V& v) {
   const auto files = [&](std::string_view key, const auto& list, std::string_view doc) {
     std::vector<std::string> names;
-    for (const auto& f : list) names.push_back(f.file.generic_string());
+    for (const auto& f : list) names.push_back(shown_name(f.file));
     v.result(key, names, core::Form{}.only_if(!names.empty()), doc);
   };
   v.result("format", std::string("survey"), "Format.");
@@ -243,7 +245,21 @@ bool holds_novatel_log(std::string_view text) {
   return false;
 }
 
+/// An object of a store: what its first bytes and its format's own index say.
+Value describe_object(const Path& address) {
+  InputFile file(address);
+  std::string start(4, '\0');
+  start.resize(file.read_some(0, start.data(), start.size()));
+  if (start.empty()) throw core::Error("the object is empty", address.string());
+  if (start == "LASF") return describe_las(address);
+  const GdalMessages messages;
+  if (Value raster = describe_raster(address); !raster.is_null()) return raster;
+  throw core::Error("is of no kind that is read from a store", address.string(),
+                    "LAS, LAZ, COPC and GeoTIFF are; fetch another file, and `swath info` says what it holds");
+}
+
 Value describe_content(const Path& path) {
+  if (is_address(path)) return describe_object(path);
   const BinaryFile file(path);
   std::string start(4096, '\0');
   start.resize(file.read_some(0, start.data(), start.size()));
@@ -346,7 +362,9 @@ void render(const Value& table, const std::string& indent, std::string& out) {
 
 core::Value describe_file(const std::filesystem::path& file) {
   Value facts = describe_content(file);
-  Value out(Value::Object{{"file", file.string()}, {"bytes", static_cast<std::uint64_t>(std::filesystem::file_size(file))}});
+  Value out(
+      Value::Object{{"file", shown_name(file)},
+                    {"bytes", is_address(file) ? InputFile(file).size() : static_cast<std::uint64_t>(std::filesystem::file_size(file))}});
   std::move(facts.members().begin(), facts.members().end(), std::back_inserter(out.members()));
   return out;
 }

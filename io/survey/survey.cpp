@@ -6,11 +6,12 @@
 #include "core/geo/crs.h"
 #include "core/printable.h"
 #include "io/las/las_ending.h"
+#include "io/store/address.h"
 
 namespace swath::io {
 
 std::filesystem::path resolve(const Survey& survey, const std::filesystem::path& file) {
-  return file.is_absolute() ? file : survey.folder / file;
+  return file.is_absolute() || is_address(file) ? file : survey.folder / file;
 }
 
 double metres_per_height(const Survey& survey, const core::Crs& crs) {

@@ -9,6 +9,7 @@
 #include "io/records/csd.h"
 #include "io/records/event_marks.h"
 #include "io/records/imu_axes.h"
+#include "io/store/address.h"
 #include "io/text/text_faults.h"
 
 namespace swath::io {
@@ -55,7 +56,8 @@ class Checks {
     for (size_t i = 0; i < survey_.control.size(); ++i) exists(survey_.control[i].file, numbered("control", i) + ".file");
     for (size_t i = 0; i < survey_.breaklines.size(); ++i) exists(survey_.breaklines[i].file, numbered("breaklines", i) + ".file");
     if (survey_.hangar) exists(*survey_.hangar, "hangar");
-    for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
+    for (size_t i = 0; i < survey_.points.size(); ++i)
+      if (!is_address(survey_.points[i].file)) exists(survey_.points[i].file, numbered("points", i) + ".file");  // else when it is opened
     repeated();
     lever_arm(survey_.calibration.lever_arm_scanner, "calibration.lever_arm_scanner");
     lever_arm(survey_.antenna.lever_arm, "antenna.lever_arm");
@@ -76,6 +78,7 @@ class Checks {
   void exists(const std::filesystem::path& file, const std::string& key) {
     if (file.empty()) return fault(key, "no file is named");
     const auto path = resolve(survey_, file);
+    if (is_address(path)) return fault(key, "only clouds and rasters are read from a store, not " + path.string(), "fetch the file");
     std::error_code ec;
     if (!std::filesystem::exists(path, ec))
       fault(key, "no such file: " + path.string(), "names are relative to the folder of the survey file");

@@ -22,6 +22,8 @@
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/printable.h"
+#include "io/store/address.h"
+#include "io/store/object.h"
 #include "io/text/output_file.h"
 
 namespace swath::io {
@@ -45,6 +47,7 @@ constexpr const char* raster_drivers[] = {"GTiff", "VRT", "AAIGrid", "GSBG",    
                                           "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED",  "GPKG", "PNG",  "JPEG", nullptr};
 constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",      "GeoJSONSeq", "DXF", "CSV",
                                           "KML",  "FlatGeobuf",     "MapInfo File", nullptr};
+constexpr const char* stored_raster_drivers[] = {"GTiff", nullptr};  // without files beside them, and naming no others
 constexpr double megabyte = 1048576, largest_block = 250 * megabyte;
 constexpr const char* other_drivers[] = {"COG", "MEM", "Memory", nullptr};  // for writing
 constexpr const char* formats_read =
@@ -121,6 +124,21 @@ std::string refusal_of(const std::filesystem::path& file) {
   return names_elsewhere(file) ? "the virtual raster names sources that are no local files" : "";
 }
 
+/// A raster at the address that the user states: nothing else is opened on its account.
+Dataset open_stored(const std::filesystem::path& address) {
+  const StoredObject object(address);  // says in our words what is wrong
+  const OpenAddress open(address);
+  Dataset opened;
+  std::string fault;
+  {
+    const GdalMessages messages;
+    opened.reset(GDALDataset::Open(gdal_name(address).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, stored_raster_drivers));
+    fault = messages.text().empty() ? "it is not a GeoTIFF, the one raster that is read from a store" : messages.text();
+  }
+  if (!opened) CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
+  return opened;
+}
+
 Dataset open_plain(const std::filesystem::path& file, unsigned kind, const char* const* drivers) {
   Dataset opened;
   std::string fault = refusal_of(file);
@@ -181,7 +199,7 @@ void GdalMessages::check_written(const std::filesystem::path& file) const {
 void CloseDataset::operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 
 Dataset open_raster(const std::filesystem::path& file) {
-  Dataset opened = open_plain(file, GDAL_OF_RASTER, raster_drivers);
+  Dataset opened = is_address(file) ? open_stored(file) : open_plain(file, GDAL_OF_RASTER, raster_drivers);
   if (const double bytes = opened ? block_bytes(*opened) : 0; bytes > largest_block) {
     CPLError(CE_Failure, CPLE_OpenFailed, "one block of the raster takes %.0f MB in memory, at most %.0f MB are read", bytes / megabyte,
              largest_block / megabyte);

@@ -10,6 +10,7 @@
 
 #include "core/config/result.h"
 #include "core/report.h"
+#include "io/store/address.h"
 #include "pipeline/limits.h"
 #include "pipeline/provenance.h"
 #include "pipeline/work/time_spent.h"
@@ -34,7 +35,7 @@ void describe(const CrsReport& r, V& v) {
 
 template <class V>
 void describe(const Input& i, V& v) {
-  v.result("file", i.file, "The file.");
+  v.result("file", io::shown_name(i.file), "The file.");
   v.result("bytes", i.bytes, "Its length.");
   v.result("xxh3", i.hash, "Its checksum, XXH3 of 64 bits.");
 }

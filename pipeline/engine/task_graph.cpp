@@ -8,6 +8,7 @@
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/records/record_count.h"
+#include "io/store/address.h"
 #include "io/survey/tree_kind.h"
 #include "io/text/binary_file.h"
 #include "io/text/value_file.h"
@@ -15,6 +16,7 @@
 #include "pipeline/engine/survey_stages.h"
 #include "pipeline/expected_time.h"
 #include "pipeline/progress.h"
+#include "pipeline/work/checksum.h"
 
 namespace swath::pipeline {
 namespace {
@@ -103,11 +105,11 @@ class GraphMaker {
 
   TaskGraph make() {
     for (const Input& i : run_.inputs) {
-      graph_.inputs.push_back({fs::absolute(i.file), i.bytes, modified(i.file), i.hash});
+      graph_.inputs.push_back({io::is_address(i.file) ? i.file : fs::absolute(i.file), i.bytes, modified(i.file), i.hash});
       graph_.bytes_in += i.bytes;
     }
     for (const io::LaserFile& f : plan_.survey.laser) count_returns(plan_.survey.folder / f.file, graph_);
-    for (const io::PointFile& f : plan_.survey.points) count_returns(plan_.survey.folder / f.file, graph_);
+    for (const io::PointFile& f : plan_.survey.points) count_returns(io::resolve(plan_.survey, f.file), graph_);
     graph_.disk = work_per_input * static_cast<double>(graph_.bytes_in);
     records_ = imu_records(plan_);
     const std::vector<Wave> waves = waves_of(plan_);
@@ -200,12 +202,17 @@ const Value& member(const Value& table, std::string_view key, const fs::path& fi
 Input unchanged_input(const Value& given, const fs::path& tasks) {
   Input out{member(given, "file", tasks).as_text(), static_cast<std::uint64_t>(member(given, "bytes", tasks).as_int()),
             member(given, "hash", tasks).as_text()};
+  const char* const list_anew = "list them anew with `swath tasks`, for another --output";
+  if (io::is_address(out.file)) {
+    if (checksum_of_input(out.file) != out.hash)
+      throw core::usage_error("it has changed since the tasks were listed", out.file.string(), list_anew);
+    return out;
+  }
   std::error_code ec;
   const auto bytes = fs::file_size(out.file, ec);
   if (ec) throw core::usage_error("it is not there: " + ec.message(), out.file.string(), "the run reads it; do all machines see it?");
   if (bytes != out.bytes || modified(out.file) != member(given, "modified", tasks).as_int())
-    throw core::usage_error("it has changed since the tasks were listed", out.file.string(),
-                            "list them anew with `swath tasks`, for another --output");
+    throw core::usage_error("it has changed since the tasks were listed", out.file.string(), list_anew);
   return out;
 }
 

@@ -18,6 +18,7 @@
 #include "io/las/las_crs.h"
 #include "io/las/las_ending.h"
 #include "io/las/las_reader.h"
+#include "io/store/address.h"
 #include "io/survey/read_survey.h"
 
 namespace swath::pipeline {
@@ -161,7 +162,9 @@ std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     std::error_code ec;
     std::vector<fs::path> found;
-    if (fs::is_directory(name, ec))
+    if (io::is_address(name))
+      found = {name};
+    else if (fs::is_directory(name, ec))
       found = files_in_folder(name);
     else if (fs::exists(name, ec))
       found = {name};
@@ -170,7 +173,7 @@ std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
     else
       throw core::usage_error("no such file or folder", name, "name LAS or LAZ files, folders of them, or patterns");
     for (fs::path& file : found)
-      if (known.insert(fs::weakly_canonical(file, ec)).second) out.push_back(std::move(file));
+      if (known.insert(io::is_address(file) ? file : fs::weakly_canonical(file, ec)).second) out.push_back(std::move(file));
   }
   return out;
 }
@@ -182,7 +185,7 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
   fs::path first_file;
   for (const fs::path& file : files) {
     core::Value& cloud = points.push(core::Value::object());
-    cloud["file"] = fs::absolute(file).lexically_normal().string();
+    cloud["file"] = io::full_name(file).string();
     if (!io::has_las_ending(file)) continue;  // their readers know them
     const Stated stated = stated_crs(file);
     if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), unstated_hint(file, by));
@@ -215,7 +218,7 @@ bool has_class(const std::vector<fs::path>& files, int point_class) {
 
 std::string lack_of_crs(const fs::path& cloud) {
   core::Value tree = core::Value::object(), points = core::Value::array();
-  points.push(core::Value::object())["file"] = fs::absolute(cloud).lexically_normal().string();
+  points.push(core::Value::object())["file"] = io::full_name(cloud).string();
   tree["points"] = std::move(points);
   const io::Survey survey = io::read_survey(tree, fs::path());  // an index as its files
   for (const io::PointFile& f : survey.points) {
@@ -231,9 +234,9 @@ std::string cloud_name(const std::vector<fs::path>& files) {
     return (file.extension() == ".copc" ? file.stem() : file).string();
   };
   if (files.size() == 1 && files.front().filename() != "ept.json") return plain(files.front());
-  const fs::path folder = fs::absolute(files.front()).lexically_normal().parent_path();
-  const bool together = std::all_of(files.begin(), files.end(),
-                                    [&](const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path() == folder; });
+  const fs::path folder = io::full_name(files.front()).parent_path();
+  const bool together =
+      std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return io::full_name(file).parent_path() == folder; });
   return together && folder.has_filename() ? folder.filename().string() : "clouds";
 }
 

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "core/config/option_visitors.h"
+#include "io/store/address.h"
+#include "io/store/input_file.h"
+#include "io/store/object.h"
 #include "io/text/output_file.h"
 
 namespace swath::pipeline {
@@ -41,6 +44,21 @@ std::string checksum_of_file(const std::filesystem::path& file) {
     if (n == 0) return sum.text();
     sum.add(buffer.data(), static_cast<std::size_t>(n));
   }
+}
+
+std::string checksum_of_input(const std::filesystem::path& file) {
+  if (!io::is_address(file)) return checksum_of_file(file);
+  const io::ObjectState state = io::object_state(file);
+  if (!state.version.empty()) return checksum_of(state.version + std::to_string(state.bytes));
+  io::InputFile object(file);
+  Checksum sum;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  for (std::uint64_t at = 0; at < object.size();) {
+    const std::size_t n = object.read_some(at, buffer.data(), buffer.size());
+    sum.add(buffer.data(), n);
+    at += n;
+  }
+  return sum.text();
 }
 
 }  // namespace swath::pipeline

@@ -29,5 +29,8 @@ class Checksum {
 std::string checksum_of(std::string_view bytes);
 /// Throws core::Error where the file cannot be read.
 std::string checksum_of_file(const std::filesystem::path& file);
+/// The same; of an object in a store, that of its size and of the ETag and time of the last change that the store states, or of its
+/// content where it states neither.
+std::string checksum_of_input(const std::filesystem::path& file);
 
 }  // namespace swath::pipeline

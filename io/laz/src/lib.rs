@@ -2,12 +2,14 @@
 //! The C border of swath_laz.h: pointers in, codes and messages out. No panic crosses it.
 
 mod error;
+mod input;
 mod reader;
 mod table;
 mod threads;
 mod writer;
 
 use std::ffi::{CStr, OsStr};
+use std::fs::File;
 use std::os::raw::{c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -15,6 +17,7 @@ use std::path::Path;
 use std::sync::Once;
 
 use error::{Error, Result, DATA, PANIC, USAGE};
+use input::{Input, Source};
 use reader::Reader;
 use writer::Writer;
 
@@ -44,6 +47,13 @@ unsafe fn guarded(message: *mut c_char, capacity: usize, f: impl FnOnce() -> Res
 
 unsafe fn path_of<'a>(path: *const c_char) -> &'a Path {
     Path::new(OsStr::from_bytes(CStr::from_ptr(path).to_bytes()))
+}
+
+unsafe fn input_of(path: *const c_char, source: *const Source) -> Result<Input> {
+    if source.is_null() {
+        return Ok(Input::File(File::open(path_of(path))?));
+    }
+    Ok(Input::of(*source))
 }
 
 unsafe fn slice_of<'a, T>(data: *const T, n: usize) -> &'a [T] {
@@ -102,6 +112,7 @@ pub unsafe extern "C" fn swath_laz_vlr(
 #[no_mangle]
 pub unsafe extern "C" fn swath_laz_reader_open(
     path: *const c_char,
+    source: *const Source,
     data_start: u64,
     vlr: *const u8,
     vlr_size: usize,
@@ -115,7 +126,7 @@ pub unsafe extern "C" fn swath_laz_reader_open(
 ) -> c_int {
     guarded(message, message_capacity, || {
         let vlr = vlr_of(vlr, vlr_size)?;
-        let opened = Reader::open(path_of(path), data_start, vlr, point_format, record_length, point_count, threads)?;
+        let opened = Reader::open(input_of(path, source)?, data_start, vlr, point_format, record_length, point_count, threads)?;
         *reader = Box::into_raw(Box::new(opened));
         Ok(())
     })
@@ -126,6 +137,7 @@ pub unsafe extern "C" fn swath_laz_reader_open(
 #[no_mangle]
 pub unsafe extern "C" fn swath_laz_reader_open_chunks(
     path: *const c_char,
+    source: *const Source,
     vlr: *const u8,
     vlr_size: usize,
     point_format: u8,
@@ -143,7 +155,7 @@ pub unsafe extern "C" fn swath_laz_reader_open_chunks(
         let vlr = vlr_of(vlr, vlr_size)?;
         let (offsets, bytes, points) = (slice_of(offsets, chunks), slice_of(bytes, chunks), slice_of(points, chunks));
         let places = (0..chunks).map(|i| (offsets[i], bytes[i], points[i]));
-        let opened = Reader::open_chunks(path_of(path), vlr, point_format, record_length, places, threads)?;
+        let opened = Reader::open_chunks(input_of(path, source)?, vlr, point_format, record_length, places, threads)?;
         *reader = Box::into_raw(Box::new(opened));
         Ok(())
     })

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //! Decompressing: a few chunks at a time, held against their sizes first, so that damaged data cost neither memory nor a crash.
 
-use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
-use std::path::Path;
 
 use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor};
 use laz::{DecompressionSelection, LasZipDecompressor, LazVlr};
 
 use crate::error::{Error, Result, USAGE};
+use crate::input::Input;
 use crate::table::{bad, check_items, check_layers, holds_chunks, read_table, smallest_chunk, vlr_is_layered, vlr_is_pointwise, Chunk, LARGEST_CHUNK_BYTES};
 use crate::threads::Threads;
 
@@ -20,9 +19,9 @@ const PIECE_BYTES: usize = 2 << 20;
 
 enum Source {
     /// With a chunk table.
-    Chunks { file: File, chunks: Vec<Chunk>, next: usize },
+    Chunks { file: Input, chunks: Vec<Chunk>, next: usize },
     /// One run of points without a table: compressor 1, or a writer that never came to its end.
-    Stream(Box<LasZipDecompressor<'static, BufReader<File>>>),
+    Stream(Box<LasZipDecompressor<'static, BufReader<Input>>>),
 }
 
 /// A chunk of which the first points are decompressed.
@@ -81,7 +80,7 @@ fn in_chunk(number: usize, offset: u64, e: Error) -> Error {
 
 impl Reader {
     pub fn open(
-        path: &Path,
+        mut file: Input,
         data_start: u64,
         vlr: LazVlr,
         point_format: u8,
@@ -90,7 +89,6 @@ impl Reader {
         threads: u32,
     ) -> Result<Self> {
         check_items(&vlr, point_format, record_length)?;
-        let mut file = File::open(path)?;
         let record_length = usize::from(record_length);
         let table = if points == 0 {
             if holds_chunks(&mut file, data_start, smallest_chunk(&vlr, record_length))? {
@@ -118,7 +116,7 @@ impl Reader {
 
     /// Only these chunks, one after the other: offset, bytes and points of each.
     pub fn open_chunks(
-        path: &Path,
+        file: Input,
         vlr: LazVlr,
         point_format: u8,
         record_length: u16,
@@ -126,8 +124,7 @@ impl Reader {
         threads: u32,
     ) -> Result<Self> {
         check_items(&vlr, point_format, record_length)?;
-        let file = File::open(path)?;
-        let size = file.metadata()?.len();
+        let size = file.size()?;
         let record_length = usize::from(record_length);
         let mut chunks = Vec::new();
         let mut all = 0;
@@ -219,9 +216,16 @@ impl Reader {
         }
         let mut compressed = vec![0u8; bytes_in];
         let mut rest = &mut compressed[..];
-        for chunk in &chunks[first..last] {
-            let (head, tail) = rest.split_at_mut(chunk.bytes);
-            file.seek(SeekFrom::Start(chunk.offset))?;
+        let mut at = first;
+        while at < last {
+            // Chunks that follow each other are one read: of an object in a store, one request.
+            let (offset, mut bytes) = (chunks[at].offset, 0);
+            while at < last && chunks[at].offset == offset + bytes as u64 {
+                bytes += chunks[at].bytes;
+                at += 1;
+            }
+            let (head, tail) = rest.split_at_mut(bytes);
+            file.seek(SeekFrom::Start(offset))?;
             file.read_exact(head)?;
             rest = tail;
         }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //! Where the chunks of a file are and how large they may be, held against the file before memory is taken for them.
 
-use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use laz::laszip::{ChunkTable, CompressorType, LazItemType};
 use laz::{LazItemRecordBuilder, LazVlr};
 
 use crate::error::{Error, Result, DATA};
+use crate::input::Input;
 
 pub const LARGEST_CHUNK_BYTES: u64 = 1 << 30;
 
@@ -51,7 +51,7 @@ pub fn vlr_is_pointwise(vlr: &LazVlr) -> bool {
     vlr.write_to(&mut bytes).is_ok() && bytes[0] == CompressorType::PointWise as u8
 }
 
-pub fn u64_at(file: &mut File, at: u64) -> std::io::Result<u64> {
+pub fn u64_at(file: &mut Input, at: u64) -> std::io::Result<u64> {
     let mut b = [0u8; 8];
     file.seek(SeekFrom::Start(at))?;
     file.read_exact(&mut b)?;
@@ -59,8 +59,8 @@ pub fn u64_at(file: &mut File, at: u64) -> std::io::Result<u64> {
 }
 
 /// Reads the table and holds every number in it against the file. None: the writer never filled its offset.
-pub fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usize, points: u64) -> Result<Option<Vec<Chunk>>> {
-    let file_size = file.metadata()?.len();
+pub fn read_table(file: &mut Input, data_start: u64, vlr: &LazVlr, record_length: usize, points: u64) -> Result<Option<Vec<Chunk>>> {
+    let file_size = file.size()?;
     let mut table_start = u64_at(file, data_start)?;
     if (table_start as i64) <= data_start as i64 && file_size >= data_start + 16 {
         table_start = u64_at(file, file_size - 8)?; // a writer that cannot seek puts it last
@@ -112,8 +112,8 @@ pub fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length:
 }
 
 /// Where what follows the points begins: waveforms, extended records, or the end of the file.
-pub fn end_of_points(file: &mut File, data_start: u64) -> std::io::Result<u64> {
-    let mut end = file.metadata()?.len();
+pub fn end_of_points(file: &mut Input, data_start: u64) -> std::io::Result<u64> {
+    let mut end = file.size()?;
     let minor = u64_at(file, 18)?.to_be_bytes()[0]; // byte 25
     for (at, since) in [(227, 3), (235, 4)] {
         let start = u64_at(file, at)?;
@@ -125,8 +125,8 @@ pub fn end_of_points(file: &mut File, data_start: u64) -> std::io::Result<u64> {
 }
 
 /// Do chunks of points follow? Where a killed writer never filled the offset of the chunk table, whatever lies behind it is one.
-pub fn holds_chunks(file: &mut File, data_start: u64, smallest: u64) -> std::io::Result<bool> {
-    let (size, end) = (file.metadata()?.len(), end_of_points(file, data_start)?);
+pub fn holds_chunks(file: &mut Input, data_start: u64, smallest: u64) -> std::io::Result<bool> {
+    let (size, end) = (file.size()?, end_of_points(file, data_start)?);
     if end < data_start + 8 {
         return Ok(false); // without even an offset
     }

@@ -9,6 +9,7 @@
 #include "core/relief.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
+#include "io/store/address.h"
 #include "io/text/value_file.h"
 #include "quality/surface_difference.h"
 #include "report/difference_map.h"
@@ -78,7 +79,7 @@ core::Crs crs_of_reference(const fs::path& file) {
 void check_reference(const io::Survey& survey, const core::Crs& of_survey, const SurfaceOptions& o) {
   if (!o.reference) return;
   const fs::path file = reference_of(survey, o);
-  if (!fs::exists(file))
+  if (!io::is_address(file) && !fs::exists(file))
     throw core::usage_error("no such file", file.string(), "check quality.surface.reference; it is relative to survey.toml");
   if (o.profiles && !fs::exists(io::resolve(survey, *o.profiles)))
     throw core::usage_error("no such file", io::resolve(survey, *o.profiles).string(),

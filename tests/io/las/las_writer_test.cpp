@@ -288,8 +288,9 @@ TEST(LasWriter, ChunksOfVariableSizeThroughTheStreams) {
     EXPECT_EQ(offsets[2], offsets[1] + bytes[1]);
     EXPECT_EQ(end, std::filesystem::file_size(file));
     swath_laz_reader* r = nullptr;
-    ASSERT_EQ(swath_laz_reader_open(file.c_str(), 10, vlr.data(), size, f, h.record_length, 1111, 2, &r, message.data(), message.size()),
-              SWATH_LAZ_OK);
+    ASSERT_EQ(
+        swath_laz_reader_open(file.c_str(), nullptr, 10, vlr.data(), size, f, h.record_length, 1111, 2, &r, message.data(), message.size()),
+        SWATH_LAZ_OK);
     EXPECT_EQ(swath_laz_reader_read(r, back.data(), 1112, message.data(), message.size()), SWATH_LAZ_USAGE);
     EXPECT_EQ(swath_laz_reader_read(r, back.data(), 1111, message.data(), message.size()), SWATH_LAZ_OK);
     EXPECT_TRUE(back == records);
@@ -326,9 +327,9 @@ TEST(LazStream, AChunkOfManyMegabytesIsReadPieceByPiece) {
     ASSERT_EQ(swath_laz_writer_finish(w, &end, message.data(), message.size()), SWATH_LAZ_OK);
     swath_laz_writer_close(w);
     swath_laz_reader* r = nullptr;
-    ASSERT_EQ(
-        swath_laz_reader_open(file.c_str(), 0, vlr.data(), size, f, h.record_length, points + 10, 2, &r, message.data(), message.size()),
-        SWATH_LAZ_OK);
+    ASSERT_EQ(swath_laz_reader_open(file.c_str(), nullptr, 0, vlr.data(), size, f, h.record_length, points + 10, 2, &r, message.data(),
+                                    message.size()),
+              SWATH_LAZ_OK);
     std::vector<std::uint8_t> back(records.size());
     for (std::uint64_t at = 0; at < points + 10;) {
       const std::uint64_t n = std::min<std::uint64_t>(77'777, points + 10 - at);

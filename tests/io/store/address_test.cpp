@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/store/address.h"
+
+#include <gtest/gtest.h>
+
+namespace swath::io {
+namespace {
+
+TEST(Address, StoresAndServersAreKnownByTheirScheme) {
+  for (const char* name : {"s3://b/a.laz", "gs://b/a.laz", "az://c/a.laz", "https://h/a.laz", "http://h:80/a.laz", "/vsis3/b/a.laz",
+                           "s3:/b/a.laz", "/vsigs/b/a.laz", "/vsiaz/c/a.laz", "/vsicurl/https://h/a.laz", "/vsimem/a.laz"})
+    EXPECT_TRUE(is_address(name)) << name;
+  for (const char* name : {"a.laz", "/data/a.laz", "s3/a.laz", "S3://b/a.laz", "data/s3://b/a.laz", "/vsisite/a.laz", "/vsizip/a.zip/a.laz",
+                           "/vsistdin/", "ftp://h/a.laz", "file:///a.laz", ""})
+    EXPECT_FALSE(is_address(name)) << name;
+}
+
+TEST(Address, GdalNamesThemByItsFileSystems) {
+  EXPECT_EQ(gdal_name("s3://bucket/folder/a.laz"), "/vsis3/bucket/folder/a.laz");
+  EXPECT_EQ(gdal_name("gs://bucket/a.laz"), "/vsigs/bucket/a.laz");
+  EXPECT_EQ(gdal_name("az://container/a.laz"), "/vsiaz/container/a.laz");
+  EXPECT_EQ(gdal_name("https://host/a//b.laz"), "/vsicurl/https://host/a//b.laz");
+  EXPECT_EQ(gdal_name("/vsis3/bucket/a.laz"), "/vsis3/bucket/a.laz");
+  EXPECT_EQ(gdal_name("s3:/bucket/a.laz"), "/vsis3/bucket/a.laz");
+  EXPECT_EQ(gdal_name("https:/host/a.laz"), "/vsicurl/https://host/a.laz");
+}
+
+TEST(Address, IsShownWithBothSlashes) {
+  EXPECT_EQ(shown_name("s3:/bucket/a.laz"), "s3://bucket/a.laz");
+  EXPECT_EQ(shown_name("https://host/a//b.laz"), "https://host/a//b.laz");
+  EXPECT_EQ(shown_name("/vsis3/bucket/a.laz"), "/vsis3/bucket/a.laz");
+  EXPECT_EQ(shown_name("a//b.laz"), "a//b.laz");
+}
+
+TEST(Address, StaysAsItIsWhereLocalNamesAreMadeFull) {
+  EXPECT_EQ(full_name("s3://b/../a.laz").string(), "s3://b/../a.laz");
+  EXPECT_EQ(full_name("/data/./a.laz").string(), "/data/a.laz");
+  EXPECT_TRUE(full_name("a.laz").is_absolute());
+}
+
+}  // namespace
+}  // namespace swath::io
