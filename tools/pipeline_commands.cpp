@@ -12,6 +12,7 @@
 #include "pipeline/input_guard.h"
 #include "pipeline/jobs/config_folder.h"
 #include "pipeline/jobs/saved_config.h"
+#include "pipeline/jobs/store_delivery.h"
 #include "pipeline/limits.h"
 #include "pipeline/run.h"
 #include "pipeline/summary.h"
@@ -50,14 +51,33 @@ namespace {
 
 struct Given {
   pipeline::Request request;
-  std::filesystem::path save;
+  std::filesystem::path save, deliver;
   Loudness loudness;
   bool json = false;
   std::optional<size_t> wave;
   std::string part = "1/1";
 };
 
+/// A run whose products go to a store, too.
+int run_and_store(const Given& a, const std::string& typed) {
+  pipeline::check_store(a.deliver);
+  pipeline::Plan plan = pipeline::make_plan(a.request);
+  if (!a.save.empty()) pipeline::save_config(plan, a.save, typed);
+  const bool speaks = !a.loudness.quiet && !a.loudness.json_log;
+  if (speaks) print_runs_as(plan);
+  pipeline::Progress progress(a.loudness.voice());
+  pipeline::Copied copied;
+  const int code = print_outcome(pipeline::run_to_store(plan, progress, typed, a.deliver, copied), plan, a.loudness);
+  if (speaks)
+    print(std::string(copied.is_earlier ? "products of the run before copied: " : "copied: ") + core::counted(copied.files, "file") + ", " +
+          core::format_number(static_cast<double>(copied.bytes) / 1e6, 4) + " MB, to " + io::shown_name(a.deliver) + "\n");
+  return code;
+}
+
 int run(const Given& a, const std::string& typed) {
+  if (!a.deliver.empty() && a.wave)
+    throw core::usage_error("a wave is a part of a run", "--deliver", "run the whole, or copy the products when the last wave is done");
+  if (!a.deliver.empty()) return run_and_store(a, typed);
   if (!a.wave) return run_pipeline(a.request, a.loudness, typed, a.save);
   if (!a.save.empty()) throw core::usage_error("a wave is a part of a run", "--save-config", "save the config of the whole run");
   pipeline::Plan plan = pipeline::make_plan(a.request);
@@ -112,6 +132,7 @@ void add_pipeline_commands(Commands& commands) {
       [a, &commands] { return run(*a, commands.typed()); });
   add_request(*c, a->request);
   add_run_options(*c, a->request, a->loudness, a->save);
+  c->add_option("--deliver", a->deliver, "Copy the finished products to an object store: s3://BUCKET/PREFIX");
   auto* wave = c->add_option("--wave", a->wave, "Do one wave of a run that several processes do together (`swath tasks` lists them)");
   c->add_option("--part", a->part, "Part of the wave, i/n: 2/8")->needs(wave);
 

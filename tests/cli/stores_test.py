@@ -255,5 +255,59 @@ class StoreFaults(StoreCase):
         self.assertEqual(self.proxy.connections, 0)
 
 
+class StoreCopies(StoreCase):
+    """Finished products copied to the bucket by --deliver."""
+
+    @classmethod
+    def make_files(cls):
+        cls.make("a.laz", POINTS, cls.survey / "survey.toml", "points/*.laz")
+
+    def objects(self, prefix):
+        pages = self.client.get_paginator("list_objects_v2").paginate(Bucket="surveys", Prefix=prefix)
+        keys = [one["Key"] for page in pages for one in page.get("Contents", [])]
+        return {key[len(prefix):]: self.client.get_object(Bucket="surveys", Key=key)["Body"].read() for key in keys}
+
+    def deliver(self, address, *more, **environment):
+        cloud = self.cloud("s3://surveys/a.laz", self.folder)
+        return swath("run", CLOUD, "--survey", cloud, "--output", self.out, "--deliver", address, *more, env={**os.environ, **environment})
+
+    def test_the_bucket_has_the_products(self):
+        done = self.deliver("s3://surveys/made")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        there = self.objects("made/")
+        local = {str(p.relative_to(self.out)): p.read_bytes() for p in self.out.rglob("*") if p.is_file()}
+        self.assertEqual(local, there)
+        self.assertIn(f"copied: {len(there)} files", done.stdout)
+        self.assertIn("report.json", there)
+
+    def test_a_copy_that_fails_is_repeated_alone(self):
+        done = self.deliver("s3://none-of-these/made", "--quiet")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        for part in ("s3://none-of-these/made/", "bucket does not exist", str(self.out)):
+            self.assertIn(part, done.stderr)
+        kept = products(self.out)
+        report = (self.out / "report.json").read_bytes()
+        self.proxy.cut_after = 0  # nothing comes back: the copies are lost
+        try:
+            done = self.deliver("s3://surveys/late", "--quiet")
+            self.assertEqual(done.returncode, 1, done.stderr)
+        finally:
+            self.proxy.cut_after = None
+        done = self.deliver("s3://surveys/late")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("products of the run before copied", done.stdout)
+        self.assertEqual((self.out / "report.json").read_bytes(), report)
+        there = self.objects("late/")
+        self.assertEqual(there.pop("report.json"), report)
+        self.assertEqual(there, {k: v for k, v in kept.items() if not k.startswith(".")})
+        self.assertEqual(there, products(self.out))
+
+    def test_what_is_no_store_is_refused_before_the_run(self):
+        for name in ("copies", "https://127.0.0.1/made", "s3://"):
+            self.refused("run", CLOUD, "--survey", self.cloud("s3://surveys/a.laz", self.folder), "--output", self.out, "--deliver", name,
+                         says="not a place in an object store", where=name, code=2)
+        self.assertFalse(self.out.exists())
+
+
 if __name__ == "__main__":
     unittest.main()
