@@ -93,22 +93,22 @@ void AdjustRounds::set_roughness() {
   }
 }
 
-void AdjustRounds::sum_up() {
+void AdjustRounds::sum_up(Inverse keep) {
   normals.emplace(system_->sum(use, rests));
   add_prior(*prior, *normals);
   solution = {};  // its inverse is as large as the new one
-  solution = solve(*system_, *normals, rests, true);
+  solution = solve(*system_, *normals, rests, keep);
   if (solution.solved) tests = tests_of(*system_, solution, rests, use);
 }
 
-void AdjustRounds::solve_here() {
+void AdjustRounds::solve_here(Inverse keep) {
   pass = linearise(*problem_, state, noise(), scale);
   system_ = std::make_unique<TieSystem>(*problem_, pass.blocks, control_rows(state.planes, factors.control.factor), surface());
   VectorXd departure = VectorXd::Zero(information_.size());
   for (Eigen::Index i = 0; i < information_.size(); ++i)
     departure[i] = value_of(state.calibration, problem_->globals[i]) - value_of(start_, problem_->globals[i]);
   prior.emplace(*problem_, system_->nodes(), factors.of_position(), factors.of_attitude(), state.correction, information_, departure);
-  sum_up();
+  sum_up(keep);
 }
 
 bool AdjustRounds::round(bool variances) {
@@ -180,7 +180,7 @@ void AdjustRounds::run() {
   release_contradicted();
   iterate(true);
   if (!use.control.empty() && solution.solved) {
-    solve_here();
+    solve_here(Inverse::both);
     shift = control_shift(*system_, state.planes, solution, rests);
     if (!shift.shifted) {
       use.control.assign(use.control.size(), 1);
@@ -189,7 +189,7 @@ void AdjustRounds::run() {
   }
   if (options_->snooping.use)
     for (int i = 0; i < snooping_rounds && solution.solved && snoop(); ++i) iterate(true);
-  solve_here();
+  solve_here(problem_->globals.empty() ? Inverse::covariance : Inverse::both);
 }
 
 }  // namespace swath::calib

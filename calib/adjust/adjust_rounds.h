@@ -45,8 +45,8 @@ class AdjustRounds {
   void fit_planes();
   void set_roughness();
   /// Linearises at the state and solves.
-  void solve_here();
-  void sum_up();
+  void solve_here(Inverse keep = Inverse::covariance);
+  void sum_up(Inverse keep = Inverse::covariance);
   /// Returns whether the step and the changes of the variances were small.
   bool round(bool variances);
   void iterate(bool variances);

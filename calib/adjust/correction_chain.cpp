@@ -24,6 +24,7 @@ using Eigen::VectorXd;
 constexpr double independent_share = 1e-6;  // of each variance: what arithmetic cannot keep apart
 constexpr double min_trend = 1e-2;          // of a trend's variance: what is left of it when the chain's own is taken off
 constexpr double max_stretch = 10.0;        // of the chain's variance
+constexpr double min_link = 1e-4;           // of two lines' trends, in units of their own information: less is none
 constexpr double min_variance = 1e-24;
 constexpr size_t tile = 128;  // instants
 
@@ -217,7 +218,14 @@ CorrectionChains::CorrectionChains(std::vector<LineChain> lines, std::vector<Cha
   }
   MatrixXd correlation = trends;
   correlation.diagonal().array() += independent_share;
-  trend_information_ = back.transpose() * correlation.llt().solve(back);
+  MatrixXd K = correlation.llt().solve(MatrixXd::Identity(trends.rows(), trends.rows()));
+  for (Index l = 0; l < K.rows(); l += size)
+    for (Index k = 0; k < l; k += size) {
+      if (K.block(l, k, size, size).cwiseAbs().maxCoeff() > min_link) continue;
+      K.block(l, k, size, size).setZero();
+      K.block(k, l, size, size).setZero();
+    }
+  trend_information_ = back.transpose() * K * back;
 }
 
 VectorXd CorrectionChains::factor_of(const Factors& factors, CorrectionScale scale) const {
@@ -275,22 +283,34 @@ void CorrectionChains::add_information(const Factors& factors, int first, TieMat
   each_step(factors, [&](const std::vector<int>& numbers, const MatrixXd& J, const MatrixXd& weight) {
     into.add(shifted(numbers), J.transpose() * weight * J);
   });
+  each_link(factors, [&](size_t l, size_t k, const MatrixXd& block) {
+    if (l == k) {
+      into.add(shifted(places_[l].trend), block);
+      return;
+    }
+    const Index size = block.rows();
+    MatrixXd M = MatrixXd::Zero(2 * size, 2 * size);
+    M.topRightCorner(size, size) = block;
+    M.bottomLeftCorner(size, size) = block.transpose();
+    into.add(shifted(both_trends(l, k)), M);
+  });
+}
+
+std::vector<int> CorrectionChains::both_trends(size_t l, size_t k) const {
+  std::vector<int> out = places_[l].trend;
+  out.insert(out.end(), places_[k].trend.begin(), places_[k].trend.end());
+  return out;
+}
+
+template <class Visit>
+void CorrectionChains::each_link(const Factors& factors, const Visit& visit) const {
   const VectorXd back = trend_factor(factors).cwiseInverse();
   const Index size = back.size();
   for (size_t l = 0; l < lines_.size(); ++l)
     for (size_t k = 0; k <= l; ++k) {
       if (trend_at_[l] < 0 || trend_at_[k] < 0) continue;
-      const MatrixXd block = back.asDiagonal() * trend_information_.block(trend_at_[l], trend_at_[k], size, size) * back.asDiagonal();
-      if (l == k) {
-        into.add(shifted(places_[l].trend), block);
-        continue;
-      }
-      std::vector<int> both = places_[l].trend;
-      both.insert(both.end(), places_[k].trend.begin(), places_[k].trend.end());
-      MatrixXd M = MatrixXd::Zero(2 * size, 2 * size);
-      M.topRightCorner(size, size) = block;
-      M.bottomLeftCorner(size, size) = block.transpose();
-      into.add(shifted(both), M);
+      const MatrixXd block = trend_information_.block(trend_at_[l], trend_at_[k], size, size);
+      if (!block.isZero(0.0)) visit(l, k, MatrixXd(back.asDiagonal() * block * back.asDiagonal()));
     }
 }
 
@@ -314,18 +334,19 @@ std::array<std::array<ScaleSums, 3>, 2> CorrectionChains::sums(const Factors& fa
       add(c, within_line, r[i] * weighted[i], 1.0 - known(i, i));
     }
   });
-  std::vector<int> numbers;
-  for (const ChainPlaces& p : places_) numbers.insert(numbers.end(), p.trend.begin(), p.trend.end());
-  if (numbers.empty()) return out;
-  const VectorXd one_back = trend_factor(factors).cwiseInverse();
-  const VectorXd back = one_back.replicate(static_cast<Index>(numbers.size()) / one_back.size(), 1);
-  const MatrixXd information = back.asDiagonal() * trend_information_ * back.asDiagonal();
-  const VectorXd s = values(numbers), weighted = information * s;
-  const VectorXd known = information.cwiseProduct(covariance(numbers)).rowwise().sum();
-  for (Index i = 0; i < s.size(); ++i) {
-    const auto row = static_cast<size_t>(i % one_back.size());
-    add(row % components(), row < components() ? line_mean : line_drift, s[i] * weighted[i], 1.0 - known[i]);
-  }
+  const auto add_trend = [&](size_t row, double squares, double freedom) {
+    add(row % components(), row < components() ? line_mean : line_drift, squares, freedom);
+  };
+  each_link(factors, [&](size_t l, size_t k, const MatrixXd& block) {
+    const VectorXd a = values(places_[l].trend), b = values(places_[k].trend);
+    const Index size = block.rows();
+    const MatrixXd C = l == k ? covariance(places_[l].trend) : MatrixXd(covariance(both_trends(l, k)).topRightCorner(size, size));
+    const MatrixXd known = block.cwiseProduct(C), squares = block.cwiseProduct(a * b.transpose());
+    for (Index i = 0; i < size; ++i) {
+      add_trend(static_cast<size_t>(i), squares.row(i).sum(), (l == k ? 1.0 : 0.0) - known.row(i).sum());
+      if (l != k) add_trend(static_cast<size_t>(i), squares.col(i).sum(), -known.col(i).sum());
+    }
+  });
   return out;
 }
 

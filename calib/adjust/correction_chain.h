@@ -80,6 +80,10 @@ class CorrectionChains {
   // visit(numbers, J, weight): the residual J x of the first knot's y and of each step, with the inverse of its covariance.
   template <class Visit>
   void each_step(const Factors& factors, const Visit& visit) const;
+  // visit(l, k, information of the trends of lines l >= k), where there is any.
+  template <class Visit>
+  void each_link(const Factors& factors, const Visit& visit) const;
+  std::vector<int> both_trends(size_t l, size_t k) const;
 
   std::vector<LineChain> lines_;
   std::vector<ChainPlaces> places_;

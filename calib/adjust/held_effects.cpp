@@ -36,7 +36,7 @@ HeldEffects effects_of_held(const TieProblem& problem, const AdjustRounds& r, co
     std::vector<PlaneRest> rests;
     Normals n = system.sum(r.use, rests);
     add_prior(*r.prior, n);
-    const TieSolution moved = solve(system, n, rests, false);
+    const TieSolution moved = solve(system, n, rests, Inverse::factor);
     if (!moved.solved) continue;
     columns.push_back(moved.x - r.solution.x);
     out.parameters.push_back(p);

@@ -63,8 +63,8 @@ class TieInverse {
   double smallest_pivot() const { return factor_.smallest_pivot(); }
   /// Columns side by side, rows by unknown.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
-  /// Before of() and diagonal(); once.
-  void invert() { factor_.invert(); }
+  /// Before of() and diagonal(); once. `inverse_alone`: half the memory, and solve() cannot be called any more.
+  void invert(NodeFactor::Keep keep = NodeFactor::Keep::factor) { factor_.invert(keep); }
   /// Of some unknowns, in their order.
   Eigen::MatrixXd of(const std::vector<int>& unknowns) const;
   Eigen::VectorXd diagonal() const;

@@ -150,7 +150,7 @@ MatrixXd TieSolution::of_globals(int globals) const {
   return covariance(numbers);
 }
 
-TieSolution solve(const TieSystem& system, const Normals& n, const std::vector<PlaneRest>& rests, bool covariance) {
+TieSolution solve(const TieSystem& system, const Normals& n, const std::vector<PlaneRest>& rests, Inverse keep) {
   TieSolution out;
   out.d.assign(system.planes(), Vector3d::Zero());
   out.x = VectorXd::Zero(n.b.size());
@@ -159,7 +159,7 @@ TieSolution solve(const TieSystem& system, const Normals& n, const std::vector<P
   if (!x.allFinite()) return out;
   out.x = x;
   out.solved = true;
-  if (covariance) inverse->invert();
+  if (keep != Inverse::factor) inverse->invert(keep == Inverse::both ? NodeFactor::Keep::factor : NodeFactor::Keep::inverse_alone);
   out.inverse = std::move(inverse);
   for (size_t k = 0; k < rests.size(); ++k) out.d[k] = -rests[k].inverse * (rests[k].b + rests[k].N_xp.transpose() * out.x(rests[k].index));
   return out;

@@ -97,14 +97,16 @@ void add_prior(const TiePrior& prior, Normals& n);
 struct TieSolution {
   Eigen::VectorXd x;               ///< steps of the unknowns
   std::vector<Eigen::Vector3d> d;  ///< of each plane
-  std::shared_ptr<const TieInverse> inverse;  ///< with the covariance of x where that was asked for
+  std::shared_ptr<const TieInverse> inverse;  ///< what was asked for
   bool solved = false;
 
   /// Covariance of some of x: each two of one plane, of one line's neighbouring knots, or of the globals with any.
   Eigen::MatrixXd covariance(const std::vector<int>& unknowns) const { return inverse->of(unknowns); }
   Eigen::MatrixXd of_globals(int globals) const;
 };
-TieSolution solve(const TieSystem& system, const Normals& with_prior, const std::vector<PlaneRest>& rests, bool covariance);
+/// What is kept of the inverse: the factor for solve(), the covariances, or both.
+enum class Inverse { factor, covariance, both };
+TieSolution solve(const TieSystem& system, const Normals& with_prior, const std::vector<PlaneRest>& rests, Inverse keep);
 /// Covariance of a plane's d0, d1, d2; `of_rest`: of the unknowns of rest.index.
 Eigen::Matrix3d plane_covariance(const PlaneRest& rest, const Eigen::MatrixXd& of_rest);
 

@@ -30,7 +30,7 @@ struct Solved {
     std::vector<PlaneRest> rests;
     n = system->sum(with, rests);
     add_prior(bench->prior(Eigen::Vector3d(1e2, 1e2, 1.0), Eigen::Vector3d::Zero()), n);
-    return solve(*system, n, rests, true);
+    return solve(*system, n, rests, Inverse::both);
   }
   std::unique_ptr<TieBench> bench;
   TiePass pass;

@@ -33,7 +33,7 @@ struct Solved {
   void solve_now() {
     Normals n = system->sum(use, rests);
     add_prior(bench->prior(Eigen::Vector3d(1e4, 1e4, 1.0), Eigen::Vector3d::Zero()), n);
-    solution = solve(*system, n, rests, true);
+    solution = solve(*system, n, rests, Inverse::both);
   }
   static constexpr size_t group = 40;
   std::unique_ptr<TieBench> bench;

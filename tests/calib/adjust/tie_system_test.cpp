@@ -91,7 +91,7 @@ TEST(TieSystem, SameAnswerAsDenseLeastSquares) {
   Normals n = system.sum(use, rests);
   const TiePrior prior = prior_of(*s);
   add_prior(prior, n);
-  const TieSolution solution = solve(system, n, rests, true);
+  const TieSolution solution = solve(system, n, rests, Inverse::both);
   ASSERT_TRUE(solution.solved);
 
   const Dense dense = dense_of(*s, pass, control_rows(s->state.planes, 1.5), prior, surface);
@@ -161,7 +161,7 @@ TEST(TieSystem, ChainedLinesAsTheDenseMatrix) {
   std::vector<PlaneRest> rests;
   Normals n = system.sum(use, rests);
   add_prior(s.prior(VectorXd::Constant(5, 1e4), VectorXd::Zero(5)), n);
-  const TieSolution solution = solve(system, n, rests, true);
+  const TieSolution solution = solve(system, n, rests, Inverse::both);
   ASSERT_TRUE(solution.solved);
   const MatrixXd N = n.N.whole();
   const VectorXd scale = N.diagonal().cwiseSqrt().cwiseInverse();
