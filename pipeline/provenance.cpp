@@ -25,7 +25,7 @@ std::string_view program_version() { return SWATH_VERSION; }
 namespace {
 
 /// Counted up whenever what lies in the work folder is written otherwise: work of another format is not gone on from.
-constexpr int work_format = 7;
+constexpr int work_format = 8;
 
 /// Every value of a key `crs` in the survey's tree.
 void add_crs(const core::Value& v, std::vector<std::string>& out) {

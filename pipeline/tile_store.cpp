@@ -185,6 +185,7 @@ void TileStore::open(const std::vector<std::string>& names) {
     source_width_ = std::max(source_width_, static_cast<size_t>(index.find("source_width")->as_int()));
     for (const core::Value& one : index.find("tiles")->items()) {
       const TileKey key = key_of(one);
+      if (one.items().size() != 7) throw core::Error("its index of tiles is damaged", (strips_ / name).string(), "remove the work folder");
       const auto n = static_cast<std::uint64_t>(one.items()[2].as_int());
       const auto edge = [&](size_t k) { return one.items().at(k).as_number(); };
       const stages::Box extent{edge(3), edge(4), edge(5), edge(6)};
@@ -301,11 +302,16 @@ std::uint64_t TileStore::left_around(const std::vector<TileKey>& keys, double ne
   const TileBox tiles(keys);
   const stages::Box inner = tiles.metres(side_).grown(near), outer = tiles.metres(side_).grown(halo);
   double left = 0.0;
-  for (const auto& [key, extent] : extents_) {
-    if (tiles.holds(key)) continue;
+  const auto add = [&](TileKey key, const stages::Box& extent) {
+    if (tiles.holds(key)) return;
     const stages::Box there = extent.grown(1.0);  // cells at its rim hold points, too
     left += std::min(static_cast<double>(tiles_.at(key)), per_area * (common_area(there, outer) - common_area(there, inner)));
-  }
+  };
+  const auto tile = [&](double edge) { return static_cast<int>(std::floor(edge / side_)); };
+  const int x0 = tile(outer.x0 - 1.0), x1 = tile(outer.x1 + 1.0), y0 = tile(outer.y0 - 1.0), y1 = tile(outer.y1 + 1.0);
+  for (int iy = y0; iy <= y1; ++iy)
+    for (int ix = x0; ix <= x1; ++ix)
+      if (const auto found = extents_.find({ix, iy}); found != extents_.end()) add(found->first, found->second);
   return static_cast<std::uint64_t>(left);
 }
 

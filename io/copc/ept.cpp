@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/copc/octree.h"
+#include "io/store/address.h"
 #include "io/text/value_file.h"
 
 namespace swath::io {
@@ -158,6 +159,8 @@ std::vector<PointFile> vpc_files(const fs::path& list, const PointFile& like) {
     PointFile& f = out.emplace_back(like);
     const fs::path name = fs::path(href).lexically_normal();
     f.file = name.is_absolute() ? name : (like.file.parent_path() / name).lexically_normal();
+    if (is_address(name) || is_address(f.file))
+      throw core::Error("a list names local files alone, not " + href, where, "state the addresses in [[points]]");
     const fs::path file = name.is_absolute() ? name : list.parent_path() / name;
     if (!fs::exists(file)) throw core::Error("no such file: " + file.string(), where, "names are relative to the folder of the .vpc");
   }

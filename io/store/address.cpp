@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "core/error.h"
+
 namespace swath::io {
 namespace {
 
@@ -42,7 +44,23 @@ bool is_address(const std::filesystem::path& file) {
   return false;
 }
 
+std::string without_access(std::string text) {
+  for (size_t at = text.find("http"); at != std::string::npos; at = text.find("http", at + 1)) {
+    size_t host = text.find(":/", at);
+    if (host != at + 4 && host != at + 5) continue;
+    host = text.find_first_not_of('/', host + 1);
+    const size_t end = std::min(text.size(), text.find_first_of(" \t\n\"'<>", at)), query = text.find('?', at);
+    if (query < end) text.replace(query, end - query, "?...");
+    const size_t slash = std::min(text.find('/', host), end), user = text.find('@', host);
+    if (user < slash) text.erase(host, user + 1 - host);
+  }
+  return text;
+}
+
 std::string gdal_name(const std::filesystem::path& address) {
+  if (const std::string plain = without_access(address.native()); plain != address.native())
+    throw core::Error("an address with a password or a signature is not opened: it would stand in reports", plain,
+                      "state the address alone, and access by GDAL's variables: docs/stores.md");
   const Scheme* s = scheme_of(address.native());
   if (!s) return address.native();
   return std::string(s->gdal) + (s->keeps_scheme ? shown_name(address) : std::string(behind(*s, address.native())));

@@ -12,8 +12,13 @@ namespace swath::io {
 /// piece: it has no relative form and is not normalized.
 bool is_address(const std::filesystem::path& file);
 
-/// GDAL's name of the address: /vsis3/BUCKET/KEY.
+/// GDAL's name of the address: /vsis3/BUCKET/KEY. Throws core::Error for one that holds a password or a signature: it would stand in
+/// reports.
 std::string gdal_name(const std::filesystem::path& address);
+
+/// Without what would give its reader access: user and password before the host, and the query of an http address (signatures, tokens),
+/// also of all such addresses in a longer text. For messages.
+std::string without_access(std::string text);
 
 /// The address with both slashes of its scheme, the name of a local file as it is: for people.
 std::string shown_name(const std::filesystem::path& file);

@@ -45,7 +45,7 @@ void set_limits() {
   });
 }
 
-/// GDAL's first failure on this thread as long as the object lives; nothing is printed.
+/// GDAL's last failure on this thread as long as the object lives, or its last warning where there is none; nothing is printed.
 class Failure {
  public:
   Failure() { CPLPushErrorHandlerEx(note, this); }
@@ -57,8 +57,11 @@ class Failure {
  private:
   static void note(CPLErr kind, CPLErrorNum, const char* message) {
     auto* self = static_cast<Failure*>(CPLGetErrorHandlerUserData());
-    if (self && kind >= CE_Warning && self->text.empty()) self->text = message;
+    if (!self || kind < CE_Warning || (kind == CE_Warning && self->is_failure_)) return;
+    self->text = without_access(message);
+    self->is_failure_ = kind >= CE_Failure;
   }
+  bool is_failure_ = false;
 };
 
 bool knows_system(const std::string& name) {
@@ -108,7 +111,7 @@ std::string hint_of(const std::string& message) {
 
 /// What GDAL says of the last attempt to open.
 std::string reason(const Failure& failure) {
-  const std::string last = VSIGetLastErrorMsg();
+  const std::string last = without_access(VSIGetLastErrorMsg());
   return last.empty() ? failure.text : last;
 }
 
@@ -125,13 +128,21 @@ std::string copied(const BinaryFile& in, const std::filesystem::path& address) {
   VSILFILE* out = VSIFOpenExL(gdal_name(address).c_str(), "wb", TRUE);
   const std::string why = "the store does not take it";
   if (!out) return reason(failure).empty() ? why : reason(failure);
+  struct Closing {
+    VSILFILE* file;
+    ~Closing() {
+      if (file) VSIFCloseL(file);
+    }
+  } closing{out};  // where the local file cannot be read to its end
   std::vector<char> buffer(copied_at_once);
   bool is_taken = true;
   for (std::uint64_t at = 0; is_taken && at < in.size();) {
     const std::size_t n = in.read_some(at, buffer.data(), buffer.size());
-    is_taken = n > 0 && VSIFWriteL(buffer.data(), 1, n, out) == n;
+    if (n == 0) return "the local file has become shorter";
+    is_taken = VSIFWriteL(buffer.data(), 1, n, out) == n;
     at += n;
   }
+  closing.file = nullptr;
   is_taken = VSIFCloseL(out) == 0 && is_taken;
   return is_taken ? "" : failure.text.empty() ? why : failure.text;
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "io/store/address.h"
 #include "io/survey/info.h"
 #include "io/text/output_file.h"
 
@@ -27,6 +28,7 @@ void add_files(const fs::path& folder, const fs::path& inner, std::vector<FoundF
     std::error_code absent;
     const fs::file_status status = at->status(absent);
     if (at->path().filename().string().starts_with(".") || name == "survey.toml") continue;
+    if (is_address(name / "x")) continue;  // a folder "https:": its files would be taken for addresses
     if (fs::is_directory(status)) {
       if (!at->is_symlink(absent) && !fs::exists(at->path() / "report.json", absent)) add_files(folder, name, out);
     } else if (fs::is_regular_file(status)) {

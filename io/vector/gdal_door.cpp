@@ -176,7 +176,7 @@ GdalMessages::GdalMessages() {
 GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
 
 void GdalMessages::note(bool failure, const char* message) {
-  if (text_.empty() || (failure && !failed_)) text_ = message;
+  if (text_.empty() || (failure && !failed_)) text_ = without_access(message);
   failed_ = failed_ || failure;
 }
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "io/store/address.h"
 #include "io/store/object.h"
 #include "io/text/value_file.h"
 #include "pipeline/engine/survey_stages.h"
+#include "pipeline/input_guard.h"
 #include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {
@@ -18,13 +20,16 @@ namespace fs = std::filesystem;
 
 constexpr const char *open_copies = ".swath-copies", *last_copied = "report.json";
 
-/// Files of the output but for those whose names begin with a dot (a work folder, temporary names, our record), the report last.
-std::vector<fs::path> products_in(const fs::path& output) {
+/// Files of the output but for those whose names begin with a dot (a work folder, temporary names, our record) and the run's inputs, the
+/// report last.
+std::vector<fs::path> products_in(const fs::path& output, const Plan& plan) {
+  std::set<fs::path> inputs;
+  for (const fs::path& file : files_of(plan)) inputs.insert(fs::weakly_canonical(file));
   std::vector<fs::path> out;
   for (auto at = fs::recursive_directory_iterator(output); at != fs::recursive_directory_iterator(); ++at) {
     const bool is_hidden = at->path().filename().string().starts_with('.');
     if (at->is_directory() && is_hidden) at.disable_recursion_pending();
-    if (at->is_regular_file() && !is_hidden) out.push_back(at->path());
+    if (at->is_regular_file() && !is_hidden && !inputs.contains(fs::weakly_canonical(at->path()))) out.push_back(at->path());
   }
   const fs::path report = output / last_copied;
   std::sort(out.begin(), out.end(),
@@ -71,15 +76,16 @@ Outcome run_to_store(Plan& plan, Progress& progress, const std::string& command,
     fs::remove(record, ignored);
     done = run(plan, progress, command);
     const core::Value& last = done->report.find("stages")->items().back();
-    write_record(record, {piece_files(output, products_in(output)), core::Value::Object{{"fingerprint", *last.find("fingerprint")},
+    write_record(record, {piece_files(output, products_in(output, plan)), core::Value::Object{{"fingerprint", *last.find("fingerprint")},
                                                                                         {"code", static_cast<std::int64_t>(done->code)}}});
   }
-  for (const fs::path& file : products_in(output)) {
+  for (const fs::path& file : products_in(output, plan)) {
     copied.bytes += io::store_file(file, place_below(store, file.lexically_relative(output)),
                                    "the products are in " + plan.run.output.string() + ": the same command copies them again");
     ++copied.files;
   }
-  fs::remove(record);
+  std::error_code ignored;
+  fs::remove(record, ignored);
   return std::move(*done);
 }
 

@@ -138,6 +138,13 @@ TEST(Ept, AVirtualPointCloudStandsForItsFiles) {
   EXPECT_THROW(expand(), core::Error);
   write("https://somewhere/a.laz");
   EXPECT_THROW(expand(), core::Error);
+  // A folder that looks like an address, beside the list.
+  std::filesystem::create_directories(one.folder / "https:/somewhere");
+  write_text_file(one.folder / "https:/somewhere/a.laz", "");
+  for (const char* name : {"./https:/somewhere/a.laz", "https:/somewhere/a.laz", "x/../https:/somewhere/a.laz", "/vsicurl/a.laz"}) {
+    write(name);
+    EXPECT_THROW(expand(), core::Error) << name;
+  }
   write_text_file(list, R"({"features": []})");
   EXPECT_THROW(expand(), core::Error);
   write_text_file(list, R"({"features": [{"assets": 3}]})");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
+
 namespace swath::io {
 namespace {
 
@@ -23,6 +25,22 @@ TEST(Address, GdalNamesThemByItsFileSystems) {
   EXPECT_EQ(gdal_name("/vsis3/bucket/a.laz"), "/vsis3/bucket/a.laz");
   EXPECT_EQ(gdal_name("s3:/bucket/a.laz"), "/vsis3/bucket/a.laz");
   EXPECT_EQ(gdal_name("https:/host/a.laz"), "/vsicurl/https://host/a.laz");
+}
+
+TEST(Address, PasswordsAndSignaturesAreNotShown) {
+  EXPECT_EQ(without_access("HTTP error code: 503 - https://b.s3.x/a.laz?X-Amz-Signature=abc&x=1. Retrying"),
+            "HTTP error code: 503 - https://b.s3.x/a.laz?... Retrying");
+  EXPECT_EQ(without_access("https:/me:secret@host/a.laz"), "https:/host/a.laz");
+  EXPECT_EQ(without_access("/vsicurl/http://me@host/a?b http://c/d?e=f"), "/vsicurl/http://host/a?... http://c/d?...");
+  for (const char* name : {"https://host/a@b.laz", "s3://bucket/what?.laz", "http", "no http:here?", "a?b"}) EXPECT_EQ(without_access(name), name);
+  EXPECT_NO_THROW(gdal_name("https://host/a@b.laz"));
+  for (const char* name : {"https://host/a.laz?sig=abc", "https://me:secret@host/a.laz", "/vsicurl/https://host/a.laz?sig=abc"}) try {
+      gdal_name(name);
+      ADD_FAILURE() << name;
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.where().find("abc"), std::string::npos) << e.where();
+      EXPECT_EQ(e.where().find("secret"), std::string::npos) << e.where();
+    }
 }
 
 TEST(Address, IsShownWithBothSlashes) {

@@ -34,5 +34,14 @@ TEST(FindRecords, WhatCannotBeReadIsNamedAndTheRestIsProposed) {
   EXPECT_NE(p.toml.find("pipe.csv: cannot be read: it is not a file"), std::string::npos) << p.toml;
 }
 
+// Its files would be taken for addresses by the survey that names them.
+TEST(FindRecords, AFolderNamedAsASchemeIsPassedOver) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder / "https:/host");
+  test::write_bytes(folder / "https:/host/laser.csv", "gps_sow_s,range_m\n474009,500.1\n474010,500.2\n");
+  test::write_bytes(folder / "laser.csv", "gps_sow_s,range_m\n474009,500.1\n474010,500.2\n");
+  EXPECT_EQ(find_records(folder.path()).size(), 1u);
+}
+
 }  // namespace
 }  // namespace swath::io
