@@ -21,7 +21,12 @@ void TruthSums::add(const core::Block& block, size_t i, const Eigen::Vector3d& p
     }
   }
   if (block.classification.empty()) return;
+  if (block.classification[i] == core::point_class::water) ++called_water;
   const bool is_ground = true_class == core::point_class::ground, is_called = block.classification[i] == core::point_class::ground;
+  if (true_class == core::point_class::water) {
+    ++(is_called ? water_taken : water_kept);
+    return;
+  }
   ++(is_ground ? (is_called ? ground_kept : ground_lost) : (is_called ? object_taken : object_kept));
 }
 
@@ -36,6 +41,9 @@ void TruthSums::add(const TruthSums& o) {
   ground_lost += o.ground_lost;
   object_kept += o.object_kept;
   object_taken += o.object_taken;
+  water_kept += o.water_kept;
+  water_taken += o.water_taken;
+  called_water += o.called_water;
 }
 
 std::optional<PointErrors> point_errors(const TruthSums& s) {
@@ -58,14 +66,19 @@ std::optional<PointErrors> point_errors(const TruthSums& s) {
 }
 
 std::optional<LabelErrors> label_errors(const TruthSums& s) {
-  if (s.n == 0 || s.ground_kept + s.object_taken == 0) return std::nullopt;
+  if (s.n == 0 || s.ground_kept + s.object_taken + s.water_taken == 0) return std::nullopt;
   LabelErrors out;
-  const double ground = s.ground_kept + s.ground_lost, object = s.object_kept + s.object_taken, n = ground + object;
+  // Without a stage that finds water, its surface is the ground that a filter is to find.
+  const bool has_water = s.called_water > 0;
+  if (!has_water) out.water_left_out = static_cast<std::uint64_t>(s.water_kept + s.water_taken);
+  const double kept = s.object_kept + (has_water ? s.water_kept : 0.0), taken = s.object_taken + (has_water ? s.water_taken : 0.0);
+  const double ground = s.ground_kept + s.ground_lost, object = kept + taken, n = ground + object;
+  if (n == 0) return std::nullopt;
   out.type_1 = 100 * s.ground_lost / std::max(ground, 1.0);
-  out.type_2 = 100 * s.object_taken / std::max(object, 1.0);
-  const double agree = (s.ground_kept + s.object_kept) / n;
+  out.type_2 = 100 * taken / std::max(object, 1.0);
+  const double agree = (s.ground_kept + kept) / n;
   out.total = 100 * (1 - agree);
-  const double chance = ((ground * (s.ground_kept + s.object_taken)) + (object * (s.ground_lost + s.object_kept))) / (n * n);
+  const double chance = ((ground * (s.ground_kept + taken)) + (object * (s.ground_lost + kept))) / (n * n);
   out.kappa = chance < 1 ? 100 * (agree - chance) / (1 - chance) : 100.0;
   return out;
 }

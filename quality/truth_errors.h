@@ -19,6 +19,7 @@ namespace swath::quality {
 struct TruthSums {
   double n = 0, sum[3] = {}, square[3] = {}, ratio_h = 0, ratio_v = 0, with_sigma = 0, largest = 0;
   double ground_kept = 0, ground_lost = 0, object_kept = 0, object_taken = 0;
+  double water_kept = 0, water_taken = 0, called_water = 0;  ///< true water that is not and is called ground; points called water
 
   /// Point `i` against its true place (map metres) and class. Outliers count in the labels, not in the errors: they are wrong by what makes
   /// them outliers.
@@ -52,6 +53,7 @@ void describe(const PointErrors& r, V& v) {
 
 struct LabelErrors {
   double type_1 = 0, type_2 = 0, total = 0, kappa = 0;
+  std::uint64_t water_left_out = 0;
 };
 
 template <class V>
@@ -61,6 +63,7 @@ void describe(const LabelErrors& r, V& v) {
   v.result("type_2_percent", r.type_2, percent(2).in_summary(), "Other returns that were accepted as ground.");
   v.result("total_error_percent", r.total, percent(2).in_summary(), "Returns with the wrong label.");
   v.result("kappa_percent", r.kappa, percent(2).in_summary(), "Cohen's kappa.");
+  v.result("water_left_out", r.water_left_out, core::if_any(), "Returns on water, left out where no return is classified as water.");
 }
 
 struct TerrainErrors {

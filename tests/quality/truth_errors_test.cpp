@@ -50,6 +50,22 @@ TEST(TruthErrors, PointsAndLabels) {
   EXPECT_FALSE(point_errors({}) || label_errors({}));
 }
 
+TEST(TruthErrors, WaterIsLeftOutWhereNothingIsClassifiedAsWater) {
+  constexpr int water = core::point_class::water;
+  const Eigen::Vector3d place(1000, 2000, 0);
+  const core::Block block = points({ground, ground, ground, building, water});
+  TruthSums without, with;
+  for (size_t i = 0; i < 4; ++i) without.add(block, i, place, i < 1 ? ground : i < 3 ? water : building);
+  const LabelErrors l = label_errors(without).value();
+  EXPECT_NEAR(l.type_2, 0, rounding);
+  EXPECT_NEAR(l.total, 0, rounding);
+  EXPECT_EQ(l.water_left_out, 2u);
+  with.add(without);
+  with.add(block, 4, place, water);
+  EXPECT_NEAR(label_errors(with).value().type_2, 50, rounding) << "two of three on water and the building";
+  EXPECT_EQ(label_errors(with).value().water_left_out, 0u);
+}
+
 TEST(TruthErrors, Terrain) {
   core::Grid model({1.0, 0, 0, 4, 1}), truth = model;
   for (size_t k = 0; k < 4; ++k) {
