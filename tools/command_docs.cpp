@@ -14,7 +14,7 @@ OptionText text_of(const CLI::Option* o) {
   OptionText out;
   out.positional = o->get_positional();
   out.help = o->get_description();
-  out.takes_value = o->get_type_size() != 0;
+  out.takes_value = o->get_items_expected_max() != 0;  // CLI11 gives flags a type of size 1, too
   out.is_required = o->get_required();
   out.is_repeated = o->get_expected_max() > 1;
   if (out.positional) {

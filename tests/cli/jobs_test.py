@@ -239,6 +239,12 @@ class Shells(unittest.TestCase):
         self.assertEqual(self.complete("swath", "run", "--survey", "cloud"), ["cloud.toml"])
         self.assertEqual(self.complete("swath", "completion", "z"), ["zsh"])
 
+    def test_a_flag_takes_no_value(self):
+        self.assertIn("--set", self.complete("swath", "run", "--quiet", "--"))
+        self.assertNotIn("--quiet) ", swath("completion", "bash").stdout)
+        self.assertNotRegex(swath("completion", "zsh").stdout, r"--quiet\[[^\]]*\]:value")
+        self.assertIn("--survey", swath("completion", "bash").stdout.split("value=1")[0])
+
     def test_every_command_and_option_is_in_every_shell(self):
         commands = re.findall(r"(?m)^  ([a-z]+)  ", swath("--help").stdout.split("Subcommands:")[-1].split("SUBCOMMANDS:")[-1])
         self.assertGreater(len(commands), 10)
