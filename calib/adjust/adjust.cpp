@@ -23,9 +23,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double common_shift = 1.0;  // m: how wrong all positions may be together, for Separation::unaided
+constexpr double common_shift = 1.0;           // m: how wrong all positions may be together, for Separation::unaided
 constexpr double smallest_eigenvalue = 1e-15;  // of a matrix scaled to ones on its diagonal
-constexpr int least_jackknifed = 4;   // lines: without one of two or three the others' geometry is another flight's
+constexpr int least_jackknifed = 4;            // lines: without one of two or three the others' geometry is another flight's
 
 std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& scanner, std::vector<Finding>& findings) {
   const BeamModel beam(scanner);
@@ -90,7 +90,10 @@ Separation separate(const TieProblem& p, const AdjustRounds& r) {
   const MatrixXd inner = B.transpose() * QB.bottomRows(B.rows()) + MatrixXd::Identity(3, 3) / (common_shift * common_shift);
   const MatrixXd moved = r.solution.inverse->solve(QB);
   const MatrixXd more = inner - QB.transpose() * moved;
-  out.unaided = (of_globals + moved.topRows(globals) * more.ldlt().solve(moved.topRows(globals).transpose())).diagonal().cwiseMax(of_globals.diagonal()).cwiseSqrt();
+  out.unaided = (of_globals + moved.topRows(globals) * more.ldlt().solve(moved.topRows(globals).transpose()))
+                    .diagonal()
+                    .cwiseMax(of_globals.diagonal())
+                    .cwiseSqrt();
   return out;
 }
 

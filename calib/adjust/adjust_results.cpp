@@ -112,7 +112,8 @@ void put_corrections(const TieProblem& p, const AdjustRounds& r, const HeldEffec
 
 void put_planes(const AdjustRounds& r, Adjustment& out) {
   out.planes = r.state.planes;
-  for (const PlaneRest& rest : r.rests) out.plane_sigma.push_back(plane_covariance(rest, r.solution.covariance(rest.index)).diagonal().cwiseSqrt());
+  for (const PlaneRest& rest : r.rests)
+    out.plane_sigma.push_back(plane_covariance(rest, r.solution.covariance(rest.index)).diagonal().cwiseSqrt());
 }
 
 void put_groups(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {

@@ -2,11 +2,11 @@
 // Source of the chain's information: Rue & Held, "Gaussian Markov Random Fields" (2005), 1.2: the sum over the steps of J^T W^-1 J. The
 // trend is an unknown of its own, x - G s = y with G = (1, place): a chain alone forgets what the knots of a line have in common, and a
 // mean or drift as a condition on all knots would fill the line's part of the matrix.
-// Deviations: what is left about the trend is correlated beyond neighbours as a Markov chain's, and independent of it. Its variance is kept,
-// and so neighbours differ by more than they did: their difference has 1.4 to 1.55 times the variance on lines of 67 knots whose errors
-// fall to 1/e in 15 s or more, 0.75 times on lines of four. The chain has a mean and a drift of its own, a tenth and a quarter of their
-// variances where errors last as long as a line, two thirds where they last a tenth of it: so much of them is independent from line to
-// line, and has the factor of what is within the line.
+// Deviations: what is left about the trend is correlated beyond neighbours as a Markov chain's, and independent of it. Its variance is
+// kept, and so neighbours differ by more than they did: their difference has 1.4 to 1.55 times the variance on lines of 67 knots whose
+// errors fall to 1/e in 15 s or more, 0.75 times on lines of four. The chain has a mean and a drift of its own, a tenth and a quarter of
+// their variances where errors last as long as a line, two thirds where they last a tenth of it: so much of them is independent from line
+// to line, and has the factor of what is within the line.
 #include "calib/adjust/correction_chain.h"
 
 #include <Eigen/Cholesky>
@@ -147,7 +147,8 @@ LineCovariance line_covariance(const std::vector<double>& times, Index q,
     for (size_t j = 0; j <= i; j += tile) {
       const size_t i_end = std::min(n, i + tile), j_end = std::min(n, j + tile);
       std::vector<double> both(times.begin() + static_cast<std::ptrdiff_t>(i), times.begin() + static_cast<std::ptrdiff_t>(i_end));
-      if (i != j) both.insert(both.end(), times.begin() + static_cast<std::ptrdiff_t>(j), times.begin() + static_cast<std::ptrdiff_t>(j_end));
+      if (i != j)
+        both.insert(both.end(), times.begin() + static_cast<std::ptrdiff_t>(j), times.begin() + static_cast<std::ptrdiff_t>(j_end));
       const MatrixXd whole = covariance(both);
       const Index own = static_cast<Index>(i_end - i) * q;
       const MatrixXd C = i == j ? whole : whole.topRightCorner(own, whole.cols() - own);
@@ -184,8 +185,7 @@ LineChain chain_of(const LineCovariance& line) {
   const MatrixXd by_trends = chain_by_trends(out, trends);
   const Remainder of_chain(trends, by_trends, q);
   for (size_t k = 0; k < n; ++k) made += of_chain.block(out.at[k], k, k).diagonal();
-  const VectorXd stretch =
-      wanted.cwiseQuotient(made.cwiseMax(min_variance)).cwiseMax(1.0 / max_stretch).cwiseMin(max_stretch).cwiseSqrt();
+  const VectorXd stretch = wanted.cwiseQuotient(made.cwiseMax(min_variance)).cwiseMax(1.0 / max_stretch).cwiseMin(max_stretch).cwiseSqrt();
   for (MatrixXd& m : out.at) m = stretch.asDiagonal() * m * stretch.asDiagonal();
   for (MatrixXd& m : out.next) m = stretch.asDiagonal() * m * stretch.asDiagonal();
   const VectorXd unit = trends.unit(), stretched = unit.cwiseProduct(stretch.replicate(2, 1));
@@ -198,8 +198,7 @@ LineChain chain_of(const LineCovariance& line) {
 
 MatrixXd root_of(const MatrixXd& covariance) {
   const VectorXd sigma = covariance.diagonal().cwiseSqrt();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(sigma.cwiseInverse().asDiagonal() * covariance *
-                                                       sigma.cwiseInverse().asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal());
   return sigma.asDiagonal() * solver.eigenvectors() * solver.eigenvalues().cwiseMax(independent_share).cwiseSqrt().asDiagonal() *
          solver.eigenvectors().transpose();
 }

@@ -35,8 +35,8 @@ struct LineChain {
   Eigen::MatrixXd trend;              ///< covariance of the means, then of the drifts, of all components
   Eigen::MatrixXd own;                ///< the same of what y has of a mean and a drift
 };
-/// Knots evenly spaced. Means, drifts and what is left have the variances of the line's covariance, component by component, and neighbouring
-/// knots nearly its correlation. A line of one knot has no trend.
+/// Knots evenly spaced. Means, drifts and what is left have the variances of the line's covariance, component by component, and
+/// neighbouring knots nearly its correlation. A line of one knot has no trend.
 LineChain chain_of(const LineCovariance& line);
 
 /// Symmetric square root of a covariance scaled to correlations, times the sigmas: R R^T = covariance.

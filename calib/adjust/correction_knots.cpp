@@ -154,8 +154,8 @@ void CorrectionKnots::place_lines(const std::vector<TieLine>& lines, double late
     place(line.position, o.position, line.grid, true);
     place(line.attitude, o.attitude, line.grid, false);
     line.given = std::max(line.position.time.size(), line.attitude.time.size()) > 1
-                    ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
-                    : std::vector<double>{line.grid.front(), line.grid.back()};
+                     ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
+                     : std::vector<double>{line.grid.front(), line.grid.back()};
     lines_.push_back(std::move(line));
   }
 }
@@ -249,7 +249,8 @@ std::vector<int> CorrectionKnots::nodes(int globals) const {
     first.push_back(next);
     next += static_cast<int>(l.grid.size());
   }
-  for (int u = 0; u < size_; ++u) at(u) = first[knot_of_[static_cast<size_t>(u)].line] + static_cast<int>(knot_of_[static_cast<size_t>(u)].knot);
+  for (int u = 0; u < size_; ++u)
+    at(u) = first[knot_of_[static_cast<size_t>(u)].line] + static_cast<int>(knot_of_[static_cast<size_t>(u)].knot);
   const int components = static_cast<int>(chains_->components());
   for (int t = 0; t < trends_; ++t) at(size_ + t) = next + t / (2 * components);
   return out;
@@ -349,7 +350,8 @@ void CorrectionKnots::add_information(const ScaleFactors& position, const ScaleF
 }
 
 CorrectionKnots::PriorOf CorrectionKnots::prior(const ScaleFactors& position, const ScaleFactors& attitude) const {
-  if (!chains_) return [C = covariance(position, attitude)](const std::vector<int>& numbers) -> Eigen::MatrixXd { return C(numbers, numbers); };
+  if (!chains_)
+    return [C = covariance(position, attitude)](const std::vector<int>& numbers) -> Eigen::MatrixXd { return C(numbers, numbers); };
   return [this, factors = CorrectionChains::Factors{position, attitude}](const std::vector<int>& numbers) {
     Eigen::MatrixXd C(numbers.size(), numbers.size());
     for (size_t i = 0; i < numbers.size(); ++i)
@@ -384,7 +386,8 @@ Eigen::MatrixXd CorrectionKnots::common_shift() const {
     for (int k = 0; k < static_cast<int>(l.position.time.size()); ++k) B.block<3, 3>(l.position.first + 3 * k, 0).setIdentity();
   // A trend's first three are the means of the position.
   if (chains_ && !lines_.front().position.time.empty())
-    for (int t = 0, of_line = 2 * static_cast<int>(chains_->components()); t < trends_; t += of_line) B.block<3, 3>(size_ + t, 0).setIdentity();
+    for (int t = 0, of_line = 2 * static_cast<int>(chains_->components()); t < trends_; t += of_line)
+      B.block<3, 3>(size_ + t, 0).setIdentity();
   return B;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The symmetric matrix of an adjustment's unknowns and its inverse. A small adjustment is one node, its matrix dense; one of many knots has a
-// node for each, and only blocks of those that share an observation (calib/sparse/node_matrix.h).
+// The symmetric matrix of an adjustment's unknowns and its inverse. A small adjustment is one node, its matrix dense; one of many knots has
+// a node for each, and only blocks of those that share an observation (calib/sparse/node_matrix.h).
 #pragma once
 
 #include <Eigen/Core>

@@ -72,8 +72,7 @@ PlaneRest TieSystem::add(std::uint32_t plane, const TieSelection& use, double si
   const auto [first, last] = groups_of(plane);
   for (int i = 0; i < globals; ++i) rest.index.push_back(i);
   if (!white)
-    for (size_t g = first; g < last; ++g)
-      rest.index.insert(rest.index.end(), blocks_[g].index.begin() + globals, blocks_[g].index.end());
+    for (size_t g = first; g < last; ++g) rest.index.insert(rest.index.end(), blocks_[g].index.begin() + globals, blocks_[g].index.end());
   std::sort(rest.index.begin(), rest.index.end());
   rest.index.erase(std::unique(rest.index.begin(), rest.index.end()), rest.index.end());
 
@@ -133,8 +132,7 @@ TiePrior::TiePrior(const TieProblem& problem, std::shared_ptr<const UnknownNodes
       globals(std::move(of_globals)),
       departure(std::move(of_departure)) {
   present.tail(correction.size()) = correction;
-  if (correction.size() > 0)
-    problem.knots->add_information(position, attitude, static_cast<int>(problem.globals.size()), corrections);
+  if (correction.size() > 0) problem.knots->add_information(position, attitude, static_cast<int>(problem.globals.size()), corrections);
 }
 
 void add_prior(const TiePrior& prior, Normals& n) {

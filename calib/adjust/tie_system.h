@@ -81,8 +81,8 @@ class TieSystem {
 /// What is known beforehand of the unknowns: sum of (x - x0)^T information (x - x0), x counted from the present state.
 struct TiePrior {
   /// `corrections`: of the knots, with factors on their sigmas; `correction`: their present values, those of the trends after them.
-  TiePrior(const TieProblem& problem, std::shared_ptr<const UnknownNodes> nodes, const ScaleFactors& position,
-           const ScaleFactors& attitude, const Eigen::VectorXd& correction, Eigen::VectorXd globals, Eigen::VectorXd departure);
+  TiePrior(const TieProblem& problem, std::shared_ptr<const UnknownNodes> nodes, const ScaleFactors& position, const ScaleFactors& attitude,
+           const Eigen::VectorXd& correction, Eigen::VectorXd globals, Eigen::VectorXd departure);
   /// (x - x0)^T information (x - x0) of the corrections as they are.
   double squares() const { return present.dot(corrections.times(present)); }
 
@@ -95,8 +95,8 @@ void add_prior(const TiePrior& prior, Normals& n);
 
 /// The solution with its covariance.
 struct TieSolution {
-  Eigen::VectorXd x;               ///< steps of the unknowns
-  std::vector<Eigen::Vector3d> d;  ///< of each plane
+  Eigen::VectorXd x;                          ///< steps of the unknowns
+  std::vector<Eigen::Vector3d> d;             ///< of each plane
   std::shared_ptr<const TieInverse> inverse;  ///< what was asked for
   bool solved = false;
 

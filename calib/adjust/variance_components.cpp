@@ -124,8 +124,8 @@ std::array<std::array<ScaleSums, 3>, 2> sums_of(const CorrectionKnots& knots, co
               static_cast<double>(n) - expected.solve(S.block(first, first, n, n)).trace()};
     };
     const ScaleSums trend = of(0, both.cols());
-    out[part] = {of(0, mean.cols()), of(mean.cols(), drift.cols()),
-                 {whole[part].squares - trend.squares, whole[part].freedom - trend.freedom}};
+    out[part] = {
+        of(0, mean.cols()), of(mean.cols(), drift.cols()), {whole[part].squares - trend.squares, whole[part].freedom - trend.freedom}};
   }
   return out;
 }

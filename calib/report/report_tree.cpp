@@ -215,7 +215,8 @@ void describe(const Adjustment& r, V& v) {
   v.result("condition", r.condition, ratio, "Condition number of the scaled normal matrix of the calibration values; null: not computed.");
   v.result("iterations", r.iterations, "Rounds of linearisation.");
   v.result("groups", r.groups.size(), "Groups of returns: one line on one plane.");
-  v.result("knot_spacing", r.knot_spacing, core::seconds().only_if(r.knot_spacing > 0.0), "Time between two knots of a line's corrections.");
+  v.result("knot_spacing", r.knot_spacing, core::seconds().only_if(r.knot_spacing > 0.0),
+           "Time between two knots of a line's corrections.");
   v.result("rejected_returns", r.rejected_returns, "Returns taken out.");
 }
 

@@ -30,7 +30,8 @@ void describe(TiePlaneOptions& o, V& v) {
            "Returns nearer than this to an edge are left out; without it by the height, 0.4 m from 400 m on.");
   v.option("mismatch", o.mismatch, core::at_least(0.0), "Rms by which lines miss one another at present.");
   v.option("target_search", o.target_search, core::above(0.0), "Distance from its survey within which a target's plane is looked for.");
-  v.option("planes", o.planes, core::within(1, 100000), "Most planes, surveyed targets not counted; without it two per second of lines, 1200 at least.");
+  v.option("planes", o.planes, core::within(1, 100000),
+           "Most planes, surveyed targets not counted; without it two per second of lines, 1200 at least.");
   v.option("per_second", o.per_second, core::above(0.0),
            "Most planes of one line in one second, those that say most of its pose; without it `planes` alone.");
   v.option("thin_walls", o.thin_walls, "Find walls that leave only a few returns in a cell, too; takes more memory.");

@@ -35,11 +35,15 @@ void prepare_map(RunState& run) {
       run.context.vertical_unit = run.plan.survey.height_unit->value;
     else if (!run.plan.survey.points.empty())
       run.context.vertical_unit = run.context.unit;
-    if (run.context.vertical_unit != 1.0)
+    // A reader of the products takes heights in metres, or in the unit of the horizontal axes.
+    const double unit = run.context.vertical_unit;
+    if (unit != 1.0 || (run.context.crs.is_projected() && unit != run.context.unit))
       run.context.product_crs = "COMPD_CS[\"" + run.context.crs.name() + " + height\"," + run.context.crs.wkt1() +
                                 ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
-                                (run.context.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," +
-                                core::format_number(run.context.vertical_unit) + "],AXIS[\"Up\",UP]]]";
+                                (unit == 1.0      ? "metre"
+                                 : unit == 0.3048 ? "foot"
+                                                  : "height unit") +
+                                "\"," + core::format_number(unit) + "],AXIS[\"Up\",UP]]]";
   }
   // What comes from the records of a flight has ellipsoidal heights; a cloud's source knows about its own.
   if (run.context.crs.heights() == core::Heights::unknown) run.context.heights = core::ellipsoidal_heights;

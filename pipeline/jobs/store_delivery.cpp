@@ -76,8 +76,9 @@ Outcome run_to_store(Plan& plan, Progress& progress, const std::string& command,
     fs::remove(record, ignored);
     done = run(plan, progress, command);
     const core::Value& last = done->report.find("stages")->items().back();
-    write_record(record, {piece_files(output, products_in(output, plan)), core::Value::Object{{"fingerprint", *last.find("fingerprint")},
-                                                                                        {"code", static_cast<std::int64_t>(done->code)}}});
+    write_record(record,
+                 {piece_files(output, products_in(output, plan)),
+                  core::Value::Object{{"fingerprint", *last.find("fingerprint")}, {"code", static_cast<std::int64_t>(done->code)}}});
   }
   for (const fs::path& file : products_in(output, plan)) {
     copied.bytes += io::store_file(file, place_below(store, file.lexically_relative(output)),

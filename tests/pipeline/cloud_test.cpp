@@ -161,6 +161,18 @@ TEST(Cloud, AFileStatesTheUnitOfItsHeights) {
   for (const double z : points_of(c.run(copy_stages, "500 m")).z) EXPECT_NEAR(z, 3.048, 0.001);
 }
 
+TEST(Cloud, HeightsInMetresOverFeetAreStatedInTheProduct) {
+  CloudCase c;
+  c.survey = "crs = \"EPSG:2263\"\nheight_unit = \"1 m\"\n";
+  c.add(square(100, 983000, 210000, 100, 10), "a.las", "EPSG:2263");
+  const fs::path tile = only_tile(c.run(copy_stages, "500 m"));
+  io::LasReader reader(tile, 1);
+  const core::Crs stated(reader.crs().definition);
+  EXPECT_TRUE(stated.has_height_unit());
+  EXPECT_NEAR(stated.vertical_metres_per_unit(), 1.0, 1e-12);
+  for (const double z : test::read_all(tile, 1).z) EXPECT_NEAR(z, 10.0, 0.001);
+}
+
 TEST(Cloud, ColoursOfOneFileAreNotLostAmongOthers) {
   CloudCase c;
   for (const std::string name : {"a.las", "b.las", "c.las"}) {

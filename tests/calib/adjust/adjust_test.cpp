@@ -186,7 +186,8 @@ TEST(Adjust, SigmasAreTrueOverManyFlights) {
 }
 
 // What the corrections of all lines lack of the trajectory's errors, over their sigmas: mean squares by component.
-std::array<double, 6> squares_of_corrections(const Adjustment& a, const trajectory::Trajectory& flown, const trajectory::Trajectory& exact) {
+std::array<double, 6> squares_of_corrections(const Adjustment& a, const trajectory::Trajectory& flown,
+                                             const trajectory::Trajectory& exact) {
   std::array<double, 6> out{};
   double n = 0.0;
   for (const LineCorrection& c : a.corrections)
@@ -194,9 +195,10 @@ std::array<double, 6> squares_of_corrections(const Adjustment& a, const trajecto
       const trajectory::Pose is = *flown.pose_at(c.time[k]), truth = *exact.pose_at(c.time[k]);
       const Eigen::Matrix3d ned = ecef_R_ned_at(truth);
       const Vector3d shift = ned.transpose() * (truth.position - is.position);
-      const core::Attitude x = core::attitude_of(ned.transpose() * is.ecef_R_body), y = core::attitude_of(ned.transpose() * truth.ecef_R_body);
-      const double error[6] = {shift.x(), shift.y(), shift.z(), y.roll - x.roll, y.pitch - x.pitch,
-                               std::remainder(y.heading - x.heading, 2.0 * core::pi)};
+      const core::Attitude x = core::attitude_of(ned.transpose() * is.ecef_R_body),
+                           y = core::attitude_of(ned.transpose() * truth.ecef_R_body);
+      const double error[6] = {shift.x(),       shift.y(),         shift.z(),
+                               y.roll - x.roll, y.pitch - x.pitch, std::remainder(y.heading - x.heading, 2.0 * core::pi)};
       for (size_t i = 0; i < 6; ++i) out[i] += std::pow((error[i] - c.value[k][i]) / c.sigma[k][i], 2);
     }
   for (double& v : out) v /= n;
@@ -219,7 +221,9 @@ TEST(Adjust, ManyKnotsGiveTheSameAsAFew) {
       Dice dice(static_cast<std::uint64_t>(7000 + s));
       const TieSet ties = ties_of(w, &dice, static_cast<std::uint64_t>(s));
       const trajectory::Trajectory t(draw.with_errors(w.exact, dice));
-      const auto run = [&](const AdjustOptions& o) { return adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, o, 1, shape); };
+      const auto run = [&](const AdjustOptions& o) {
+        return adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, o, 1, shape);
+      };
       const Adjustment a = run(few), b = run(many);
       EXPECT_TRUE(b.converged) << s << " after " << b.iterations;
       EXPECT_EQ(b.knot_spacing, 0.2);

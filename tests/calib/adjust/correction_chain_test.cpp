@@ -87,7 +87,8 @@ TEST(CorrectionChain, CovarianceOfALineInParts) {
   const LineCovariance line = line_covariance(seconds(knots), q, errors_at);
   MatrixXd B = MatrixXd::Zero(q * knots, 2 * q);
   for (Index k = 0; k < knots; ++k)
-    for (Index c = 0; c < q; ++c) B(q * k + c, c) = 1.0, B(q * k + c, q + c) = static_cast<double>(k) - 0.5 * static_cast<double>(knots - 1);
+    for (Index c = 0; c < q; ++c)
+      B(q * k + c, c) = 1.0, B(q * k + c, q + c) = static_cast<double>(k) - 0.5 * static_cast<double>(knots - 1);
   for (Index c = 0; c < 2 * q; ++c) B.col(c).normalize();
   EXPECT_LT((line.by_trends - C * B).norm(), 1e-9 * (C * B).norm());
   for (const Index k : {0, 126, 127, 128, 255, 298}) {
@@ -112,7 +113,8 @@ TEST(CorrectionChain, MeanDriftAndTheRestHaveTheirVariances) {
     const Implied p({knots}, MatrixXd::Identity(2 * q, 2 * q));
     for (Index c = 0; c < q; ++c) {
       const auto is = variances(p.of_corrections(), c, knots), wanted = variances(errors(knots), c, knots);
-      for (const size_t s : {size_t{0}, size_t{1}, size_t{2}}) EXPECT_NEAR(is[s], wanted[s], 0.03 * wanted[s]) << knots << " " << c << " " << s;
+      for (const size_t s : {size_t{0}, size_t{1}, size_t{2}})
+        EXPECT_NEAR(is[s], wanted[s], 0.03 * wanted[s]) << knots << " " << c << " " << s;
     }
   }
 }

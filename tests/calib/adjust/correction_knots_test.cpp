@@ -135,7 +135,8 @@ TEST(CorrectionKnots, EachScaleHasItsOwnFactor) {
 
 // Twelve lines of 100 s with knots every second: 7272 corrections, where 1500 may all be correlated with all.
 struct ManyLines {
-  explicit ManyLines(CorrectionForm position = CorrectionForm::spline, CorrectionForm attitude = CorrectionForm::spline, int most = 100000) {
+  explicit ManyLines(CorrectionForm position = CorrectionForm::spline, CorrectionForm attitude = CorrectionForm::spline,
+                     int most = 100000) {
     for (int l = 0; l < 12; ++l) lines.push_back({l + 1, 200.0 * l, 200.0 * l + 100.0});
     CorrectionOptions o;
     o.position = position;
@@ -178,7 +179,8 @@ TEST(CorrectionKnots, ChainedPriorIsAsGiven) {
   std::vector<int> numbers;
   const Eigen::MatrixXd D = m.knots->derivatives(3, 640.0, numbers);
   const Eigen::MatrixXd C = D * prior(numbers) * D.transpose(), given = test::tactical_errors({640.0});
-  for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(C(i, i)), (i < 3 ? 1.0 : 0.5) * std::sqrt(given(i, i)), 0.15 * std::sqrt(given(i, i))) << i;
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(std::sqrt(C(i, i)), (i < 3 ? 1.0 : 0.5) * std::sqrt(given(i, i)), 0.15 * std::sqrt(given(i, i))) << i;
   EXPECT_NEAR(std::sqrt(m.knots->mean_square(true, {})), std::sqrt((2 * 0.02 * 0.02 + 0.03 * 0.03) / 3), 0.001);
   EXPECT_GT(m.knots->mean_square(false, line_mean), m.knots->mean_square(false, line_drift));
 }

@@ -168,8 +168,7 @@ TEST(TieSystem, ChainedLinesAsTheDenseMatrix) {
   const MatrixXd C = scale.asDiagonal() * (scale.asDiagonal() * N * scale.asDiagonal()).llt().solve(MatrixXd(scale.asDiagonal()));
   const auto near = [&](const MatrixXd& is, const MatrixXd& wanted) {
     for (Eigen::Index i = 0; i < is.rows(); ++i)
-      for (Eigen::Index j = 0; j < is.cols(); ++j)
-        EXPECT_NEAR(is(i, j), wanted(i, j), 1e-5 * std::sqrt(wanted(i, i) * wanted(j, j)));
+      for (Eigen::Index j = 0; j < is.cols(); ++j) EXPECT_NEAR(is(i, j), wanted(i, j), 1e-5 * std::sqrt(wanted(i, i) * wanted(j, j)));
   };
   EXPECT_LT((solution.x + C * n.b).cwiseQuotient(C.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff(), 1e-5);
   for (const PlaneRest& rest : rests) near(solution.covariance(rest.index), C(rest.index, rest.index));

@@ -32,7 +32,8 @@ TEST(Address, PasswordsAndSignaturesAreNotShown) {
             "HTTP error code: 503 - https://b.s3.x/a.laz?... Retrying");
   EXPECT_EQ(without_access("https:/me:secret@host/a.laz"), "https:/host/a.laz");
   EXPECT_EQ(without_access("/vsicurl/http://me@host/a?b http://c/d?e=f"), "/vsicurl/http://host/a?... http://c/d?...");
-  for (const char* name : {"https://host/a@b.laz", "s3://bucket/what?.laz", "http", "no http:here?", "a?b"}) EXPECT_EQ(without_access(name), name);
+  for (const char* name : {"https://host/a@b.laz", "s3://bucket/what?.laz", "http", "no http:here?", "a?b"})
+    EXPECT_EQ(without_access(name), name);
   EXPECT_NO_THROW(gdal_name("https://host/a@b.laz"));
   for (const char* name : {"https://host/a.laz?sig=abc", "https://me:secret@host/a.laz", "/vsicurl/https://host/a.laz?sig=abc"}) try {
       gdal_name(name);
