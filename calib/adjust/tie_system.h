@@ -39,7 +39,7 @@ void with_surface(GroupBlock& block, double surface);
 
 /// N x = -b, x = (global unknowns, corrections with their trends).
 struct Normals {
-  explicit Normals(std::shared_ptr<const UnknownNodes> nodes) : N(nodes), b(Eigen::VectorXd::Zero(nodes->unknowns())) {}
+  explicit Normals(const std::shared_ptr<const UnknownNodes>& nodes) : N(nodes), b(Eigen::VectorXd::Zero(nodes->unknowns())) {}
   /// Of a small system.
   explicit Normals(int unknowns) : N(TieMatrix::dense(unknowns)), b(Eigen::VectorXd::Zero(unknowns)) {}
   TieMatrix N;
