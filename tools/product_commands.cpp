@@ -40,7 +40,7 @@ int volumes(const VolumeArguments& a) {
 
 struct MapTerrainArguments {
   pipeline::MapTerrainRequest request;
-  std::string cell = "5 m", interval, sigma, max_edge = "1000 m", tolerance = "1 cm", flats = "fill";
+  std::string cell = "5 m", interval, sigma, height_unit, max_edge = "1000 m", tolerance = "1 cm", flats = "fill";
   bool quiet = false, json = false;
 };
 
@@ -57,6 +57,7 @@ int map_terrain(MapTerrainArguments& a) {
   r.tolerance = length_of(a.tolerance, "--tolerance", -1e-12);
   if (!a.interval.empty()) r.interval = length_of(a.interval, "--interval", 0.0);
   if (!a.sigma.empty()) r.sigma = length_of(a.sigma, "--sigma", -1e-12);
+  if (!a.height_unit.empty()) r.height_unit = length_of(a.height_unit, "--height-unit", 0.0);
   r.keep_flats = a.flats == "keep";
   const pipeline::MapTerrainFound found = pipeline::write_map_terrain(r);
   if (a.json)
@@ -159,6 +160,7 @@ void add_map_terrain_command(Commands& commands) {
   c->add_option("--crs", a->request.crs, "CRS of the model, and of files that state none: EPSG:25832");
   c->add_option("--cell", a->cell, "Side of the model's cells")->capture_default_str();
   c->add_option("--interval", a->interval, "Height between contours; without it the usual one");
+  c->add_option("--height-unit", a->height_unit, "Unit of the heights of files that do not state it: \"1 us-ft\"");
   c->add_option("--sigma", a->sigma, "Standard deviation of the contours' own heights; without it they count as right");
   c->add_option("--max-edge", a->max_edge, "Longest triangle bridged")->capture_default_str();
   c->add_option("--tolerance", a->tolerance, "By which contours that meet may differ in height")->capture_default_str();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/geo/height_unit.h"
 #include "io/raster/geotiff.h"
 
 namespace swath::io {
@@ -71,9 +72,7 @@ std::optional<HeightFile> heights_in(const std::filesystem::path& file, const Op
 double height_unit_of(const std::filesystem::path& file) {
   const RasterInfo info = read_raster_info(file);
   const std::string unit = info.units.empty() ? "" : info.units[0];
-  if (unit == "m" || unit == "metre" || unit == "meter") return 1.0;
-  if (unit == "ft" || unit == "foot") return 0.3048;
-  if (unit == "US survey foot" || unit == "ftUS" || unit == "us-ft") return 1200.0 / 3937.0;
+  if (const auto metres = core::metres_of_unit_name(unit)) return *metres;
   return info.crs_wkt.empty() ? 1.0 : core::Crs(info.crs_wkt).vertical_metres_per_unit();
 }
 

@@ -6,9 +6,11 @@
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "core/geo/height_unit.h"
 #include "io/raster/geotiff.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
+#include "io/vector/height_statement.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/line_file.h"
 
@@ -19,13 +21,15 @@ namespace fs = std::filesystem;
 
 struct MapFile {
   fs::path name;
+  std::optional<double> unit;  ///< metres of one unit of its heights, where it states it
   io::VectorLines lines;
   io::SpotFile spots;
 };
 
 std::vector<MapFile> read_files(const MapTerrainRequest& r) {
   std::vector<MapFile> out;
-  for (const fs::path& file : r.files) out.push_back({file, io::read_lines(file, r.field), io::read_spots(file, r.field)});
+  for (const fs::path& file : r.files)
+    out.push_back({file, io::stated_height_unit(file), io::read_lines(file, r.field), io::read_spots(file, r.field)});
   return out;
 }
 
@@ -34,6 +38,39 @@ core::Crs crs_of(const MapTerrainRequest& r, const std::vector<MapFile>& files) 
   for (const MapFile& file : files)
     if (!file.spots.crs_wkt.empty()) return core::Crs(file.spots.crs_wkt);
   return {};
+}
+
+/// Metres of one unit of a file's heights: what it states, else the option, else what the model's CRS leaves no doubt of.
+double unit_of(const MapFile& file, const MapTerrainRequest& r, const core::Crs& crs) {
+  if (file.unit) return *file.unit;
+  if (r.height_unit) return *r.height_unit;
+  if (crs.has_height_unit()) return crs.vertical_metres_per_unit();
+  if (core::is_same_unit(crs.metres_per_unit(), 1.0)) return 1.0;
+  throw core::usage_error("the file does not state the unit of its heights, and the CRS is in " + crs.unit_name(), file.name.string(),
+                          "name the unit: --height-unit \"1 m\", \"1 ft\" or \"1 us-ft\"");
+}
+
+/// Brings the heights of all files to the unit of the model, which is that of its CRS, else of the first file. Metres of it; without a CRS
+/// every length is in units of the files.
+double settle_heights(std::vector<MapFile>& files, const MapTerrainRequest& r, const core::Crs& crs) {
+  if (crs.empty()) return 1.0;
+  const double model = crs.has_height_unit() ? crs.vertical_metres_per_unit() : unit_of(files.front(), r, crs);
+  for (MapFile& file : files) {
+    const double unit = unit_of(file, r, crs), scale = core::is_same_unit(unit, model) ? 1.0 : unit / model;
+    for (io::VectorLine& line : file.lines.lines) {
+      line.height *= scale;
+      for (double& z : line.z) z *= scale;
+    }
+    for (double& z : file.spots.z) z *= scale;
+  }
+  return model;
+}
+
+/// The CRS that products state.
+std::string product_crs(const core::Crs& crs, double vertical) {
+  if (crs.empty()) return {};
+  const bool plain = core::is_same_unit(vertical, 1.0) && core::is_same_unit(crs.metres_per_unit(), 1.0);
+  return crs.has_height_unit() || plain ? crs.wkt() : core::with_height_unit(crs, vertical);
 }
 
 bool is_place(double x, double y, double z) { return is_on_a_map(x, y) && std::isfinite(z); }
@@ -76,11 +113,10 @@ terrain::MapContent content_of(std::vector<MapFile> files, const core::Crs& crs,
   return out;
 }
 
-void write_products(const MapTerrainRequest& r, const core::Crs& crs, const terrain::MapSurface& s, const MapTerrainFound& found) {
+void write_products(const MapTerrainRequest& r, const std::string& wkt, const terrain::MapSurface& s, const MapTerrainFound& found) {
   std::error_code ec;
   fs::create_directories(r.folder, ec);
   if (ec) throw core::SystemError("cannot make the folder: " + ec.message(), r.folder.string());
-  const std::string wkt = crs.empty() ? std::string() : crs.wkt();
   io::write_grid(r.folder / "dtm.tif", s.grid, wkt);
   io::write_grid(r.folder / "dtm_quality.tif", s.grid, wkt, {false, !s.grid.sigma.empty(), false, true});
   std::vector<float> part;
@@ -97,10 +133,12 @@ MapTerrainFound write_map_terrain(const MapTerrainRequest& r) {
   for (const char* name : {"dtm.tif", "dtm_quality.tif", "dtm_part.tif", "map_terrain.json"}) guard.expect_apart(r.folder / name);
   std::vector<MapFile> files = read_files(r);
   const core::Crs crs = crs_of(r, files);
-  const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : crs.vertical_metres_per_unit();
+  const double metre = crs.empty() ? 1.0 : crs.metres_per_unit();
   if (metre == 0.0)
     throw core::Error("the map is in degrees", r.files.front().string(), "name a projected CRS for the model: --crs EPSG:25832");
+  const double vertical = settle_heights(files, r, crs);
   MapTerrainFound found;
+  if (!crs.empty()) found.height_unit = core::height_unit_name(vertical), found.unit = "m";
   const terrain::MapContent content = content_of(std::move(files), crs, found);
   const auto heights = [&](std::optional<double> v) { return v ? std::optional(*v / vertical) : v; };
   terrain::MapTerrain made = terrain::map_terrain(
@@ -114,19 +152,22 @@ MapTerrainFound write_map_terrain(const MapTerrainRequest& r) {
     if (e.sigma) *e.sigma *= vertical;
   }
   found.errors = std::move(made.errors);
-  write_products(r, crs, made.surface, found);
+  write_products(r, product_crs(crs, vertical), made.surface, found);
   return found;
 }
 
 std::string map_terrain_text(const MapTerrainFound& f) {
+  const std::string unit = f.unit.empty() ? "" : " " + f.unit;
   char line[240];
-  std::snprintf(line, sizeof line, "%s of %s, interval %g; %s, %s; without a height: %llu\n", core::counted(f.contours, "contour").c_str(),
-                core::counted(f.levels, "height").c_str(), f.interval, core::counted(f.spots, "spot height").c_str(),
-                core::counted(f.breaklines, "breakline").c_str(), static_cast<unsigned long long>(f.without_height));
+  std::snprintf(line, sizeof line, "%s of %s, interval %.6g%s; %s, %s; without a height: %llu\n",
+                core::counted(f.contours, "contour").c_str(), core::counted(f.levels, "height").c_str(), f.interval, unit.c_str(),
+                core::counted(f.spots, "spot height").c_str(), core::counted(f.breaklines, "breakline").c_str(),
+                static_cast<unsigned long long>(f.without_height));
   std::string out = line;
-  std::snprintf(line, sizeof line, "%zu cells of %g, %zu void; flat parts filled: %zu, left flat: %zu\n", f.cells, f.cell, f.voids,
-                f.flat_parts, f.flat_parts_left);
+  std::snprintf(line, sizeof line, "%zu cells of %.6g%s, %zu void; flat parts filled: %zu, left flat: %zu\n", f.cells, f.cell, unit.c_str(),
+                f.voids, f.flat_parts, f.flat_parts_left);
   out += line;
+  if (!f.height_unit.empty()) out += "heights of the model in " + f.height_unit + "; errors in " + f.unit + "\n";
   std::snprintf(line, sizeof line, "%-18s %12s %12s %14s %14s %10s\n", "part", "cells", "tested", "every second", "every fourth", "sigma");
   out += line;
   for (const terrain::MapError& e : f.errors) {

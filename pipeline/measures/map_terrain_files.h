@@ -22,6 +22,7 @@ struct MapTerrainRequest {
   double max_edge = 1000.0;                  ///< m
   double tolerance = 0.01;                   ///< m, by which contours that meet may differ
   bool keep_flats = false;
+  std::optional<double> height_unit;  ///< metres of one unit of the heights of files that do not state it
   std::filesystem::path folder;
 };
 
@@ -33,6 +34,7 @@ struct MapTerrainFound {
   std::size_t cells = 0, voids = 0;
   std::size_t flat_parts = 0, flat_parts_left = 0;
   std::vector<terrain::MapError> errors;
+  std::string unit, height_unit;  ///< of the lengths here, of the model's heights; empty without a CRS
 };
 template <class V>
 void describe(const MapTerrainFound& f, V& v) {
@@ -42,6 +44,7 @@ void describe(const MapTerrainFound& f, V& v) {
   v.result("spot_heights", f.spots, "Points with a height.");
   v.result("breaklines", f.breaklines, "Lines whose height changes.");
   v.result("without_height", f.without_height, "Lines and points without a height, left out.");
+  v.result("height_unit", f.height_unit, core::Form{}.only_if(!f.height_unit.empty()), "Unit of the model's heights.");
   v.result("cell", f.cell, "Side of the cells.");
   v.result("cells", f.cells, "Cells with a height.");
   v.result("voids", f.voids, "Cells without one, inside the map's frame.");
@@ -52,7 +55,8 @@ void describe(const MapTerrainFound& f, V& v) {
 
 /// FOLDER/dtm.tif, dtm_quality.tif (sigma, void reason), dtm_part.tif (1 between contours, 2 flat and filled, 3 flat and kept) and
 /// map_terrain.json. A line whose height changes is a breakline, any other a contour. Throws core::Error: files that cannot be read, a map
-/// in degrees, no height, contours that cross at different heights, a product that would take the place of a file that is read.
+/// in degrees, no height, a unit of heights that is
+/// not stated in a CRS in feet, contours that cross at different heights, a product that would take the place of a file that is read.
 MapTerrainFound write_map_terrain(const MapTerrainRequest& request);
 std::string map_terrain_text(const MapTerrainFound& found);
 

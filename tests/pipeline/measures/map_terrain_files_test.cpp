@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "io/raster/geotiff.h"
+#include "io/raster/height_file.h"
 #include "io/vector/feature_file.h"
 #include "io/vector/vector.h"
 #include "tests/world/support.h"
@@ -13,6 +14,7 @@ namespace swath::pipeline {
 namespace {
 
 constexpr const char* utm32 = "EPSG:32632";
+constexpr double survey_foot = 1200.0 / 3937.0;
 constexpr double east = 600000.0, north = 5300000.0;
 
 /// A slope of 10 % to the north over 200 m: contours every 2 m, one spot height, and a breakline with an edge up to it.
@@ -21,9 +23,9 @@ void write_slope(const std::filesystem::path& contours, const std::filesystem::p
   for (int k = 0; k <= 10; ++k)
     writer.add(core::ContourLine{{east, east + 200}, {north + 20.0 * k, north + 20.0 * k}, 400.0 + 2.0 * k, false, false, false});
   writer.close();
-  io::SpatialLayer spots{"spots", "", io::SpatialShape::point, false, {}, {}};
+  io::SpatialLayer spots{"spots", "Spot heights", io::SpatialShape::point, false, {}, {}};
   spots.features.push_back({{{east + 52.5, north + 52.5, 412.0}}, {}});
-  io::SpatialLayer lines{"ridge", "", io::SpatialShape::line, false, {}, {}};
+  io::SpatialLayer lines{"ridge", "Breaklines", io::SpatialShape::line, false, {}, {}};
   lines.features.push_back({{{east + 150, north + 85, 409.0}, {east + 150, north + 95, 409.2}}, {}});
   io::write_gpkg(more, {spots, lines}, crs);
 }
@@ -56,7 +58,7 @@ TEST(MapTerrainFiles, ContoursSpotHeightsAndBreaklinesOfAnyFileMakeOneModel) {
     const core::Grid quality = io::read_grid(folder / "out/dtm_quality.tif");
     EXPECT_FALSE(quality.sigma.empty());
     EXPECT_EQ(test::entries(folder / "out"), 4u);
-    EXPECT_NE(map_terrain_text(found).find("11 contours of 11 heights, interval 2; 1 spot height, 1 breakline"), std::string::npos);
+    EXPECT_NE(map_terrain_text(found).find("11 contours of 11 heights, interval 2 m; 1 spot height, 1 breakline"), std::string::npos);
   }
 }
 
@@ -84,12 +86,31 @@ TEST(MapTerrainFiles, LengthsInFeetAreFeetInTheFileAndMetresInTheAnswer) {
   const test::TemporaryFolder folder;
   write_slope(folder / "map.gpkg", folder / "more.gpkg", "EPSG:2225+6360");  // California zone 1, feet; NAVD88, US survey feet
   MapTerrainRequest r = request(folder, "map.gpkg");
-  r.cell = 5.0 * 1200.0 / 3937.0;
+  r.cell = 5.0 * survey_foot;
   const MapTerrainFound found = write_map_terrain(r);
   EXPECT_NEAR(io::read_grid(folder / "out/dtm.tif").lattice.cell, 5.0, 1e-9);
   EXPECT_NEAR(found.cell, r.cell, 1e-12);
-  const double foot = found.interval / 2.0;  // of heights, whose unit a GeoPackage of contours need not state
-  EXPECT_TRUE(std::abs(foot - 1200.0 / 3937.0) < 1e-9 || foot == 1.0) << foot;
+  EXPECT_NEAR(found.interval, 2.0 * survey_foot, 1e-9);
+  EXPECT_NEAR(io::height_unit_of(folder / "out/dtm.tif"), survey_foot, 1e-9);
+  EXPECT_NE(map_terrain_text(found).find("interval 0.609601 m"), std::string::npos) << map_terrain_text(found);
+  EXPECT_NE(map_terrain_text(found).find("heights of the model in US survey foot"), std::string::npos);
+}
+
+TEST(MapTerrainFiles, AUnitOfHeightsThatIsNotStatedIsAskedForWhereTheMapIsInFeet) {
+  const test::TemporaryFolder folder;
+  io::SpatialLayer lines{"contours", "", io::SpatialShape::line, true, {{"height", 0.0}}, {}};
+  for (int k = 0; k <= 10; ++k)
+    lines.features.push_back({{{east, north + 20.0 * k, 0}, {east + 200, north + 20.0 * k, 0}}, {400.0 + 2.0 * k}});
+  io::write_gpkg(folder / "map.gpkg", {lines}, "EPSG:2225");
+  MapTerrainRequest r = request(folder, "map.gpkg");
+  r.files.pop_back();
+  EXPECT_THROW(write_map_terrain(r), core::Error);
+  r.height_unit = survey_foot;
+  EXPECT_NEAR(write_map_terrain(r).interval, 2.0 * survey_foot, 1e-9);
+  EXPECT_NEAR(io::height_unit_of(folder / "out/dtm.tif"), survey_foot, 1e-9);
+  r.height_unit = 1.0;
+  EXPECT_NEAR(write_map_terrain(r).interval, 2.0, 1e-9);
+  EXPECT_NEAR(io::height_unit_of(folder / "out/dtm.tif"), 1.0, 1e-9);
 }
 
 }  // namespace
