@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/geo/height_unit.h"
 #include "core/printable.h"
 #include "io/text/output_file.h"
 #include "io/vector/feature_layers.h"
@@ -43,9 +44,13 @@ std::vector<CheckFileRead> tables_read(const io::Survey& survey) {
 
 void write_marks(const Context& context, const std::string& name, const std::vector<quality::CheckMark>& marks,
                  const std::vector<MarkFound>& found, const std::vector<quality::MarkReading>& readings) {
-  std::string table = "name,x,y,z,sigma,cover,points_minus_mark,dtm_minus_mark,predicted_sigma,slope,lines\n";
+  std::string table =
+      "name,x,y,z,sigma,cover,points_minus_mark,dtm_minus_mark,predicted_sigma,slope,lines,unit,height_unit,difference_unit\n";
+  const std::string unit = context.crs.empty() ? "metre" : context.crs.unit_name(),
+                    height_unit = core::height_unit_name(context.vertical_unit);
+  const std::string units = "," + core::csv_field(unit) + "," + core::csv_field(height_unit) + ",metre\n";
   io::FeatureLayer layer{"marks",
-                         "Check points; differences product minus check point in metres",
+                         "Check points; z in " + height_unit + ", sigmas and differences (product minus check point) in metre",
                          io::FeatureShape::point,
                          {"name", "cover", "place", "lines"},
                          {"z", "sigma", "points_minus_mark", "dtm_minus_mark", "predicted_sigma", "slope"},
@@ -59,7 +64,7 @@ void write_marks(const Context& context, const std::string& name, const std::vec
     const std::string lines = by_line(readings, m);
     std::snprintf(text, sizeof text, ",%.3f,%.3f,%.3f,%.4f,", x, y, z, mark.sigma);
     table += core::csv_field(mark.name) + text + core::csv_field(mark.cover) + "," + cell_of(f.points) + "," + cell_of(f.dtm) + "," +
-             cell_of(sigma) + "," + cell_of(f.slope) + "," + lines + "\n";
+             cell_of(sigma) + "," + cell_of(f.slope) + "," + lines + units;
     layer.features.push_back({{{{x, y}}}, {mark.name, mark.cover, mark.place, lines}, {z, mark.sigma, f.points, f.dtm, sigma, f.slope}});
   }
   io::write_text_file(context.output / (name + ".csv"), table);

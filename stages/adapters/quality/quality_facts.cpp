@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geo/height_unit.h"
 #include "io/text/value_file.h"
 
 namespace swath::stages {
@@ -102,6 +103,8 @@ QualityFacts quality_facts(const Context& context, const quality::StatedLimits& 
   f.survey = context.survey.name;
   f.crs = context.crs.empty() ? "" : context.crs.name();
   f.heights = context.heights;
+  f.metres = context.unit;
+  if (!core::is_same_unit(context.unit, 1.0)) f.unit = context.crs.unit_name();
   f.density = facts_in(context, "density.json");
   f.swath = facts_in(context, "swath.json");
   f.lines = facts_in(context, "lines.json");

@@ -36,6 +36,8 @@ class Facts {
 
 struct QualityFacts {
   std::string survey, crs, heights;
+  std::string unit = "m";  ///< of places on the map
+  double metres = 1.0;     ///< of one such unit
   Facts density, swath, lines, surface, points;
   std::string level = "none";
   std::vector<quality::Requirement> requirements{};

@@ -136,10 +136,10 @@ void add_voids(QualitySheet& page, const QualityFacts& f) {
   if (std::vector<Facts> rows = f.swath.list("largest"); !rows.empty()) {
     report::Table t;
     t.caption = "The largest voids; all of them are in the layer voids of swath.gpkg.";
-    t.columns = {{"easting (m)"}, {"northing (m)"}, {"area (m2)"}, {"", false}};
+    t.columns = {{"easting (" + f.unit + ")"}, {"northing (" + f.unit + ")"}, {"area (m2)"}, {"", false}};
     for (const Facts& r : rows)
-      t.rows.push_back({number_text(r.number("x"), 1), number_text(r.number("y"), 1), number_text(r.number("area_m2"), 1),
-                        r.holds("water") ? "water" : "void"});
+      t.rows.push_back({number_text(r.number("x") / f.metres, 1), number_text(r.number("y") / f.metres, 1),
+                        number_text(r.number("area_m2"), 1), r.holds("water") ? "water" : "void"});
     page.table(t);
   }
   add_map(page, f.distribution_map, "Share of cells of twice the pulse spacing with a first return; outlines of voids, water or not.");
