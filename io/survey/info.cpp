@@ -27,6 +27,7 @@
 #include "io/records/event_marks.h"
 #include "io/store/address.h"
 #include "io/store/input_file.h"
+#include "io/survey/describe_products.h"
 #include "io/survey/describe_tables.h"
 #include "io/survey/file_facts.h"
 #include "io/survey/read_survey.h"
@@ -131,6 +132,8 @@ Value describe_tree(const Path& path) {
       return describe_hangar(path);
     case TreeKind::survey:
       return describe_survey(path);
+    case TreeKind::planned_flight:
+      return describe_planned_flight(tree);
     case TreeKind::report:
       return core::reported(TreeFacts{format, tree, "stages"});
     case TreeKind::pipeline:
@@ -280,6 +283,7 @@ Value describe_content(const Path& path) {
   if (!binary && rinex_kind(path) != RinexKind::other) return describe_rinex(path);
   if (!binary && looks_like_loopstats(path)) return describe_loopstats(path);
   if (path.extension() == ".toml" || path.extension() == ".json") return describe_tree(path);
+  if (!binary && looks_like_quality_xml(start)) return describe_quality_xml(path);
   if (binary && looks_like_sbet(path)) return describe_sbet(path);
   if (binary && looks_like_smrmsg(path)) return describe_smrmsg(path);
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;

@@ -15,7 +15,7 @@ struct KindText {
   std::string_view name, use;
 };
 
-constexpr std::array<KindText, 12> texts{{
+constexpr std::array<KindText, 13> texts{{
     {"", ""},
     {"a pipeline", "swath run FILE --survey survey.toml"},
     {"a survey", "swath run CONFIG --survey FILE"},
@@ -28,6 +28,7 @@ constexpr std::array<KindText, 12> texts{{
     {"the accuracy of a block", "swath block-theory FILE"},
     {"a simulation", "swath simulate FOLDER --config FILE"},
     {"an Entwine point tile", "a cloud like any other: swath dtm FOLDER, or [[points]] file = \"FILE\""},
+    {"a planned flight", "made by swath plan; simulate.json beside it: swath simulate FOLDER --config simulate.json"},
 }};
 
 bool has_any(const core::Value& tree, std::initializer_list<const char*> keys) {
@@ -48,6 +49,9 @@ TreeKind kind_of(const core::Value& tree) {
   if (has("tasks") && has("fingerprint")) return TreeKind::tasks;
   if (has("program") && has("stages")) return TreeKind::report;
   if (has("stage")) return TreeKind::pipeline;
+  // Products whose tables are named as those of surveys are.
+  if (has("calibration") && has("sigma") && has("verdict")) return TreeKind::calibration;
+  if (has("direction_deg") && has("line_length_m") && has("lines")) return TreeKind::planned_flight;
   if (is_surely_survey(tree)) return TreeKind::survey;
   if (has("calibration") && has("sigma") && !has_any(tree, {"imu", "gnss", "crs"})) return TreeKind::calibration;
   if (has("point") && has_any(tree, {"station", "target", "angle"})) return TreeKind::hangar;

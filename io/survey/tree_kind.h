@@ -22,6 +22,7 @@ enum class TreeKind {
   block_theory,
   simulation,
   entwine,
+  planned_flight,
 };
 
 TreeKind kind_of(const core::Value& tree);

@@ -22,6 +22,8 @@ TEST(TreeKind, FollowsFromTheKeys) {
   EXPECT_EQ(kind("fingerprint = \"0\"\ntasks = []\n"), TreeKind::tasks);
   EXPECT_EQ(kind("program = \"swath 1\"\nstages = []\n"), TreeKind::report);
   EXPECT_EQ(kind("[calibration]\n[sigma]\n"), TreeKind::calibration);
+  EXPECT_EQ(kind("crs = \"EPSG:32632\"\nverdict = \"\"\n[calibration]\n[sigma]\n[flight]\n"), TreeKind::calibration) << "with its report";
+  EXPECT_EQ(kind("crs = \"EPSG:32632\"\ndirection_deg = 0.0\nline_length_m = 1.0\n[[lines]]\n"), TreeKind::planned_flight);
   EXPECT_EQ(kind("[sensor]\n[flight]\n[simulate]\n"), TreeKind::flight_plan);
   EXPECT_EQ(kind("[[camera]]\n[images]\n[[image_points]]\n"), TreeKind::block);
   EXPECT_EQ(kind("[[camera]]\n[[image_points]]\n[[event]]\n"), TreeKind::survey) << "a block of a survey";
@@ -34,7 +36,8 @@ TEST(TreeKind, FollowsFromTheKeys) {
 
 TEST(TreeKind, FormatsAndKindsAreOneToOne) {
   for (const TreeKind k : {TreeKind::pipeline, TreeKind::survey, TreeKind::hangar, TreeKind::tasks, TreeKind::report, TreeKind::calibration,
-                           TreeKind::flight_plan, TreeKind::block, TreeKind::block_theory, TreeKind::simulation, TreeKind::entwine}) {
+                           TreeKind::flight_plan, TreeKind::block, TreeKind::block_theory, TreeKind::simulation, TreeKind::entwine,
+                           TreeKind::planned_flight}) {
     EXPECT_EQ(kind_of_format(format_of(k)), k) << format_of(k);
     EXPECT_FALSE(use_of(k).empty());
   }

@@ -23,6 +23,7 @@ TEST(DescribeVector, ContoursOfThisProgram) {
   EXPECT_EQ(gpkg.find("format")->as_text(), "GeoPackage");
   const core::Value& lines = gpkg.find("layers")->items()[0];
   EXPECT_EQ(lines.find("name")->as_text(), "contours");
+  EXPECT_EQ(lines.find("heights")->as_text(), "ellipsoidal height") << "as the layer's description says";
   EXPECT_EQ(lines.find("features")->as_int(), 2);
   EXPECT_EQ(lines.find("height")->items()[1].as_number(), 412);
   EXPECT_EQ(lines.find("x")->items()[1].as_number(), 500020);
