@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/text/npy.h"
 #include "quality/truth_errors.h"
@@ -82,17 +83,42 @@ void compare_terrain(const Context& context, const std::vector<TileKey>& tiles, 
   }
   found.dtm = sums.errors();
 }
+/// One map by name, or in its coordinates: a CRS without a code is written with other words by a GeoTIFF.
+bool is_one_map(const Context& context, const core::Crs& truth) {
+  if (core::is_same_map(truth, context.crs)) return true;
+  constexpr double same = 0.01;  // units of the CRS
+  const Eigen::Vector3d at(context.origin.x() / context.unit, context.origin.y() / context.unit, 0.0);
+  try {
+    return (core::Transform(context.crs.horizontal(), truth.horizontal())(at) - at).head<2>().norm() < same;
+  } catch (const core::Error&) {  // no way between them
+    return false;
+  }
+}
+
+/// Why coordinates of the truth are not those of the run: a survey that was given another CRS than it was simulated in. The true terrain
+/// states the CRS of all of the truth.
+std::string other_map(const Context& context) {
+  if (!context.survey.truth.dtm) return {};
+  const std::string wkt = io::read_raster_info(io::resolve(context.survey, *context.survey.truth.dtm)).crs_wkt;
+  if (wkt.empty() || context.crs.empty() || is_one_map(context, core::Crs(wkt))) return {};
+  return "not compared: the truth is in " + core::Crs(wkt).name() + ", the run in " + context.crs.name();
+}
+
 fs::path truth_sums(const fs::path& folder, TileKey key) { return piece_file(folder, key, "sums"); }
 
 void sum_errors(const TileJob& job, const Context& context) {
   quality::TruthSums sums;
-  if (context.survey.truth.returns) sums = compare_points(context, job.block, job.own);
+  if (context.survey.truth.returns && other_map(context).empty()) sums = compare_points(context, job.block, job.own);
   write_rows(truth_sums(job.folder, job.key), std::vector{sums});
 }
 TruthFindings find_errors(const MergeJob& job, const Context& context) {
   TruthFindings found;
   if (!context.survey.truth.returns && !context.survey.truth.dtm) {
     found.truth = "none: the survey names no truth";
+    return found;
+  }
+  if (const std::string why = other_map(context); !why.empty()) {
+    found.truth = why;
     return found;
   }
   std::vector<quality::TruthSums> tiles;
