@@ -114,7 +114,8 @@ std::string stage_help(const std::string& name) {
   const auto s = stages::make_stage(name);
   if (!s) {
     const std::string near = core::nearest(name, stage_names());
-    throw core::usage_error("'" + name + "' is no stage", "", near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
+    throw core::usage_error("'" + name + "' is not a stage", "",
+                            near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }
   return std::string(s->info().name) + ": " + std::string(s->info().summary) + "\n\n  works on  " + grains_text(*s) + "\n  needs     " +
          both(s->info().needs, s->info().needs_products) + used_by(*s, "\n  uses      ") + "\n  gives     " +

@@ -124,7 +124,7 @@ void read_stages(const Value& tree, const std::vector<stages::Entry>& entries, P
     auto stage = own != entries.end() ? own->make() : stages::make_stage(type->as_text());
     if (!stage) {
       const std::string near = core::nearest(type->as_text(), stages::stage_names());
-      faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is no stage",
+      faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is not a stage",
                         near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?"});
       continue;
     }

@@ -133,7 +133,7 @@ std::vector<MapItem> legend_of(const core::Grid& g, const Span& span, const Show
   std::array<bool, void_reasons> voids{};
   for (size_t k = 0; k < g.height.size(); ++k)
     if (std::isnan(g.height[k])) voids[static_cast<size_t>(g.reason[k])] = true;
-  static constexpr std::array<const char*, void_reasons> names{"", "no data", "edge too long", "water", "never seen"};
+  static constexpr std::array<const char*, void_reasons> names{"", "no data", "too far from ground points", "water", "never seen"};
   for (size_t v = 1; v < names.size(); ++v)
     if (voids[v]) out.push_back(void_item(static_cast<core::Void>(v), names[v]));
   return out;

@@ -214,7 +214,7 @@ TheoryTable theory_table(TheoryOptions o) {
 }
 
 std::string theory_text(const TheoryTable& t) {
-  std::string out = "accuracy of the points, root mean square; units of sigma0 s and metres\n";
+  std::string out = "accuracy of the points, root mean square, in units of sigma0 times the scale, and in metres\n";
   char line[240];
   std::snprintf(line, sizeof line, "  %-30s %7s %7s %9s %9s\n", "case", "mu_xy", "mu_z", "mu_xy m", "mu_z m");
   out += line;

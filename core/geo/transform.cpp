@@ -54,7 +54,8 @@ Candidate candidate_of(PJ_CONTEXT* c, const PJ* operation) {
   double west, south, east, north;
   if (proj_get_area_of_use(c, operation, &west, &south, &east, &north, nullptr) && west > -1000.0)
     k.west = west, k.south = south, k.east = east, k.north = north;
-  bool has_null = false;  // PROJ's own grid of zeros: no file, and not counted as available
+  std::vector<std::string> grids;  // missing
+  bool has_null = false;           // PROJ's own grid of zeros: no file, and not counted as available
   for (int i = 0; i < proj_coordoperation_get_grid_used_count(c, operation); ++i) {
     const char *name = nullptr, *url = nullptr;
     int available = 0;
@@ -65,7 +66,7 @@ Candidate candidate_of(PJ_CONTEXT* c, const PJ* operation) {
       has_null = true;
       continue;
     }
-    k.missing += (k.missing.empty() ? "the grid file " : " and ") + grid;
+    grids.push_back(grid);
     k.hint +=
         (k.hint.empty() ? "" : "; ") +
         (proj_text(url).empty() ? "put " + grid +
@@ -73,8 +74,9 @@ Candidate candidate_of(PJ_CONTEXT* c, const PJ* operation) {
                                       "GeoTIFF file of it in PROJ text: +geoidgrids=FILE"
                                 : "fetch " + proj_text(url) + " with `projsync --file " + grid + "`, or put it into a folder of PROJ_DATA");
   }
-  if (!k.missing.empty())
-    k.missing += ", not installed";
+  for (size_t i = 0; i < grids.size(); ++i) k.missing += (i == 0 ? "" : i + 1 == grids.size() ? " and " : ", ") + grids[i];
+  if (!grids.empty())
+    k.missing = (grids.size() == 1 ? "the grid file " : "the grid files ") + k.missing + ", not installed";
   else if (!has_null && !proj_coordoperation_is_instantiable(c, operation))
     k.missing = "a method that this PROJ does not have", k.hint = "install a newer PROJ";
   return k;

@@ -74,7 +74,7 @@ TEST(Plan, ATreeInPlaceOfAFileMayNameStagesOfItsOwn) {
   Case c("");
   c.request.tree = io::parse_toml(std::string(good) + "[[stage]]\ntype = \"a.copy\"\n", "the tree");
   const std::string unknown = c.fault();
-  EXPECT_NE(unknown.find("'a.copy' is no stage"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("'a.copy' is not a stage"), std::string::npos) << unknown;
   const auto line = std::count(good, good + std::strlen(good), '\n') + 2;
   EXPECT_NE(unknown.find("the tree:" + std::to_string(line) + ":"), std::string::npos) << unknown;
   c.request.entries = {{"a.copy", [] { return stages::make_stage("writers.las"); }}};

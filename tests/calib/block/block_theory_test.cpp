@@ -97,6 +97,7 @@ TEST(BlockTheory, BackwardsGivesTheStationSigmaOfATolerance) {
     o.sigma_station = core::Metres(*t.allowed[row].for_xy);
     EXPECT_NEAR(theory_of(o, which).mu_xy, 0.8, exact * 0.8) << which.name;
   }
+  EXPECT_NE(theory_text(t).find("in units of sigma0 times the scale"), std::string::npos);
   EXPECT_NE(theory_text(t).find("4 strip drift, cross strips"), std::string::npos);
 }
 
