@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/geo/height_unit.h"
 #include "pipeline/engine/map_fit.h"
 #include "pipeline/engine/strips.h"
 #include "pipeline/work/survey_piece.h"
@@ -35,15 +36,11 @@ void prepare_map(RunState& run) {
       run.context.vertical_unit = run.plan.survey.height_unit->value;
     else if (!run.plan.survey.points.empty())
       run.context.vertical_unit = run.context.unit;
-    // A reader of the products takes heights in metres, or in the unit of the horizontal axes.
-    const double unit = run.context.vertical_unit;
-    if (unit != 1.0 || (run.context.crs.is_projected() && unit != run.context.unit))
-      run.context.product_crs = "COMPD_CS[\"" + run.context.crs.name() + " + height\"," + run.context.crs.wkt1() +
-                                ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
-                                (unit == 1.0      ? "metre"
-                                 : unit == 0.3048 ? "foot"
-                                                  : "height unit") +
-                                "\"," + core::format_number(unit) + "],AXIS[\"Up\",UP]]]";
+    // A reader of the products takes heights in the unit of the horizontal axes, or in metres.
+    if (!core::is_same_unit(run.context.vertical_unit, 1.0) ||
+        (run.context.crs.is_projected() && !core::is_same_unit(run.context.vertical_unit, run.context.unit)))
+      run.context.product_crs = core::with_height_unit(run.context.crs, run.context.vertical_unit,
+                                                       run.plan.survey.points.empty() ? core::ellipsoidal_heights : "height");
   }
   // What comes from the records of a flight has ellipsoidal heights; a cloud's source knows about its own.
   if (run.context.crs.heights() == core::Heights::unknown) run.context.heights = core::ellipsoidal_heights;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geo/height_unit.h"
 #include "io/las/las_crs.h"
 #include "io/las/las_writer.h"
 #include "stages/adapters/cloud/clouds.h"
@@ -55,7 +56,7 @@ LasRun las_run(const Context& context, const PointFields& fields, bool coloured)
   const bool all_extended = all_of([](const io::LasSource& s) { return s.header.point_format >= 6; });
   const bool all_wkt = all_of([](const io::LasSource& s) { return (s.header.global_encoding & io::las_encoding::wkt) != 0; });
   // A file that leaves the unit of its heights open is read in that of its horizontal axes.
-  const bool says_heights = context.crs.has_height_unit() || context.vertical_unit == context.unit ||
+  const bool says_heights = context.crs.has_height_unit() || core::is_same_unit(context.vertical_unit, context.unit) ||
                             all_of([](const io::LasSource& s) { return io::las_crs(s.header).vertical_metres > 0.0; });
   const bool keeps = says_heights && io::keeps_crs(files, context.crs) && (all_wkt || !fields.only_copc);
   auto all = std::make_shared<const io::LasSources>(std::move(files), fields.times == WrittenTimes::recorded);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/geo/height_unit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+
+namespace swath::core {
+namespace {
+
+constexpr double international_foot = 0.3048, survey_foot = 1200.0 / 3937.0;
+
+}  // namespace
+
+bool is_same_unit(double a, double b) { return std::abs(a / b - 1.0) < 1e-9; }  // the two feet are 2e-6 apart
+
+std::string height_unit_name(double metres) {
+  if (is_same_unit(metres, 1.0)) return "metre";
+  if (is_same_unit(metres, international_foot)) return "foot";
+  return is_same_unit(metres, survey_foot) ? "US survey foot" : "height unit";
+}
+
+std::optional<double> metres_of_unit_name(std::string_view name) {
+  const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (is_one_of({"m", "metre", "meter"})) return 1.0;
+  if (is_one_of({"ft", "foot"})) return international_foot;
+  if (is_one_of({"US survey foot", "ftUS", "us-ft", "US-ft", "ft_us"})) return survey_foot;
+  return std::nullopt;
+}
+
+std::string with_height_unit(const Crs& crs, double metres, std::string_view heights) {
+  char length[40];
+  std::snprintf(length, sizeof length, "%.15g", metres);
+  const std::string name(heights);
+  return "COMPD_CS[\"" + crs.name() + " + " + name + "\"," + crs.wkt1() + ",VERT_CS[\"" + name + "\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
+         height_unit_name(metres) + "\"," + length + "],AXIS[\"Up\",UP]]]";
+}
+
+}  // namespace swath::core
