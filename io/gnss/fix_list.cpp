@@ -27,6 +27,7 @@ constexpr double lowest_antenna = -480.0;   // m, ellipsoidal: the shore of the 
 constexpr double fastest = 500.0;           // m/s
 constexpr double near_one_another = 100.0;  // m: errors of single positions
 constexpr double gap_steps = 1.5;
+constexpr double largest_sigma = 1e5;     // m or m/s: more says that it is not known
 constexpr double least_variance = 1e-10;  // m^2 or (m/s)^2; less is a zero that went through rotations
 
 /// Horizontal sigma that a solution of this kind has at least, m; its height has twice that.
@@ -52,6 +53,25 @@ Matrix3d ecef_R_neu(double latitude, double longitude) {
   Matrix3d m = core::ecef_R_ned(latitude, longitude);
   m.col(2) *= -1;
   return m;
+}
+
+/// The largest sigma of a covariance; 0 where there is none.
+double largest_sigma_of(const Matrix3d& covariance) {
+  const Vector3d variances = covariance.diagonal();
+  return variances.array().isNaN().any() ? 0.0 : std::sqrt(std::max(variances.maxCoeff(), 0.0));
+}
+
+/// What is impossible about a fix whose position is finite, and what to do; empty where nothing is.
+std::pair<std::string, std::string> impossibility(const Fix& f) {
+  if (!f.fault.empty()) return {f.fault, f.hint};
+  const double height = core::geodetic_of(f.position).height;
+  const std::string metres = core::format_number(std::round(height)) + " m";
+  if (f.position.norm() < 0.5 * core::wgs84::b || std::abs(height) > near_ground)
+    return {"the position is not near the ground: height " + metres, "check the columns and their units"};
+  if (height < lowest_antenna)
+    return {"the position lies below all land: height " + metres,
+            "heights count up from the ellipsoid: those of this file may count down; correct their sign, or the columns"};
+  return {};
 }
 
 }  // namespace
@@ -91,20 +111,16 @@ void FixList::leave_out_not_finite() {
   std::uint64_t far = 0;
   std::erase_if(read_, [&](const Read& r) {
     const Fix& f = r.fix;
-    std::string fault = f.fault, hint = f.hint;
-    if (fault.empty() && (!std::isfinite(f.time) || !f.position.allFinite())) {
+    if (f.fault.empty() && (!std::isfinite(f.time) || !f.position.allFinite())) {
       ++not_finite_;
       tally_.count("GNSS fixes with a value that is empty or not finite, left out", place(r));
       return true;
     }
+    const auto [fault, hint] = impossibility(f);
     if (fault.empty()) {
-      const double height = core::geodetic_of(f.position).height;
-      const bool on_earth = f.position.norm() >= 0.5 * core::wgs84::b && std::abs(height) <= near_ground;
-      if (on_earth && height >= lowest_antenna) return false;
-      const std::string metres = core::format_number(std::round(height)) + " m";
-      fault = on_earth ? "the position lies below all land: height " + metres : "the position is not near the ground: height " + metres;
-      hint = on_earth ? "heights count up from the ellipsoid: those of this file may count down; correct their sign, or the columns"
-                      : "check the columns and their units";
+      const bool unknown = largest_sigma_of(f.covariance) > largest_sigma;
+      if (unknown) tally_.count("GNSS fixes with a sigma over 100 km, left out", place(r));
+      return unknown;
     }
     ++far;
     tally_.count("GNSS fixes with an impossible position, left out", place(r) + ": " + fault);
@@ -173,7 +189,9 @@ void FixList::take(const Read& read) {
                                 : Matrix3d(R * variances.asDiagonal() * R.transpose()));
   const double v = file_.sigma_velocity.value;
   const Vector3d velocity_variances = Vector3d::Constant(v * v);
-  const bool moves = f.velocity.allFinite();
+  const bool known = !(largest_sigma_of(f.velocity_covariance) > largest_sigma);
+  if (!known) tally_.count("GNSS velocities with a sigma over 100 km/s, left out", place(read));
+  const bool moves = known && f.velocity.allFinite();
   velocities_ = velocities_ || moves;
   out_.velocity.push_back(moves ? f.velocity : Vector3d(Vector3d::Constant(Fix::none)));
   const bool own_velocity = moves && !f.velocity_covariance.array().isNaN().all();

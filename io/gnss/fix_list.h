@@ -51,12 +51,12 @@ class FixList {
   std::string place_of(size_t k) const { return place(read_[k]); }
   /// Times of all fixes, where they were added without; those of which it is NaN are left out.
   void set_times(const std::vector<double>& times);
-  /// The fixes. Left out and counted: time or position not finite, a repeated time, a position not within 100 km of the ground, a time over
-  /// an hour or a position over 500 m/s and 100 m from most fixes around it. Where the covariance is missing it comes from the survey's
-  /// sigmas and the quality: stated for fixed and unknown, at least 0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m (single)
-  /// horizontally and twice that in height. One that is not positive definite is replaced by its diagonal or by those; counted. Counts
-  /// fixes by quality, gaps, and steps faster than 500 m/s. Throws Error: no fix, time going back, over 3 % not finite or not near the
-  /// ground, over 20 % repeated.
+  /// The fixes. Left out and counted: time or position not finite, a repeated time, a position not within 100 km of the ground, a sigma
+  /// over 100 km, a time over an hour or a position over 500 m/s and 100 m from most fixes around it. Where the covariance is missing it
+  /// comes from the survey's sigmas and the quality: stated for fixed and unknown, at least 0.1 m (PPP), 0.3 m (float), 1 m (differential,
+  /// SBAS), 3 m (single) horizontally and twice that in height. One that is not positive definite is replaced by its diagonal or by those;
+  /// counted. Counts fixes by quality, gaps, and steps faster than 500 m/s. Throws Error: no fix, time going back, over 3 % not finite or
+  /// not near the ground, over 20 % repeated.
   core::GnssData finish();
 
  private:

@@ -72,6 +72,25 @@ TEST_F(Fixes, LatencyAndSigmasByQuality) {
   EXPECT_EQ(tally_.of("GNSS fixes: float"), 1u);
 }
 
+TEST_F(Fixes, SigmasThatSayThatNothingIsKnown) {
+  FixList l = list();
+  for (int k = 0; k < 4; ++k) {
+    Fix f = fix_at(1.4e9 + k);
+    const double position = k == 1 ? 1e6 : 0.02, velocity = k == 2 ? 1e6 : 0.05;  // m, m/s
+    f.covariance = position * position * Matrix3d::Identity();
+    f.velocity = Vector3d(1, 2, 3);
+    f.velocity_covariance = velocity * velocity * Matrix3d::Identity();
+    l.add(f, 1);
+  }
+  const core::GnssData g = l.finish();
+  ASSERT_EQ(g.size(), 3u);
+  EXPECT_EQ(g.time[1], 1.4e9 + 2.5);
+  EXPECT_TRUE(g.velocity[1].array().isNaN().all());
+  EXPECT_EQ(g.velocity[2], Vector3d(1, 2, 3));
+  EXPECT_EQ(tally_.of("GNSS fixes with a sigma over 100 km, left out"), 1u);
+  EXPECT_EQ(tally_.of("GNSS velocities with a sigma over 100 km/s, left out"), 1u);
+}
+
 TEST_F(Fixes, CovariancesThatAreNone) {
   FixList l = list();
   Matrix3d good, zero = Matrix3d::Zero(), crossed;
