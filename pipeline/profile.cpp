@@ -11,6 +11,7 @@
 
 #include "core/block.h"
 #include "core/error.h"
+#include "core/geo/height_unit.h"
 #include "core/geo/same_map.h"
 #include "core/printable.h"
 #include "io/las/cloud_crs.h"
@@ -303,8 +304,7 @@ bool is_one_system(const StatedCrs& a, const StatedCrs& b) {
 }
 
 std::string named(const StatedCrs& s) {
-  const char* unit = s.height_unit == 1.0 ? "m" : "ft";
-  return s.crs.name() + " (" + s.crs.unit_name() + ", heights in " + unit + ")";
+  return s.crs.name() + " (" + s.crs.unit_name() + ", heights in " + core::unit_symbol(s.height_unit) + ")";
 }
 
 /// The one system of all files that state one, the model before the clouds. Throws core::Error where there are two.
@@ -342,8 +342,7 @@ std::vector<ProfileFound> write_profiles(const ProfileRequest& request) {
   check_names(request, files, lines);
   const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
-  const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };
-  const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()), height_unit = short_unit(system.height_unit);
+  const std::string unit = metric ? "m" : core::unit_symbol(crs.metres_per_unit()), height_unit = core::unit_symbol(system.height_unit);
 
   std::vector<Section> sections;
   for (const ProfileLine& line : lines) sections.push_back(section_of(line, half_width));

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double international_foot = 0.3048, survey_foot = 1200.0 / 3937.0;
 
+std::string digits_of(double metres) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.15g", metres);
+  return text;
+}
+
 }  // namespace
 
 bool is_same_unit(double a, double b) { return std::abs(a / b - 1.0) < 1e-9; }  // the two feet are 2e-6 apart
@@ -19,6 +25,12 @@ std::string height_unit_name(double metres) {
   if (is_same_unit(metres, 1.0)) return "metre";
   if (is_same_unit(metres, international_foot)) return "foot";
   return is_same_unit(metres, survey_foot) ? "US survey foot" : "height unit";
+}
+
+std::string unit_symbol(double metres) {
+  if (is_same_unit(metres, 1.0)) return "m";
+  if (is_same_unit(metres, international_foot)) return "ft";
+  return is_same_unit(metres, survey_foot) ? "ftUS" : "units of " + digits_of(metres) + " m";
 }
 
 std::optional<double> metres_of_unit_name(std::string_view name) {
@@ -32,11 +44,9 @@ std::optional<double> metres_of_unit_name(std::string_view name) {
 }
 
 std::string with_height_unit(const Crs& crs, double metres, std::string_view heights) {
-  char length[40];
-  std::snprintf(length, sizeof length, "%.15g", metres);
   const std::string name(heights);
   return "COMPD_CS[\"" + crs.name() + " + " + name + "\"," + crs.wkt1() + ",VERT_CS[\"" + name + "\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
-         height_unit_name(metres) + "\"," + length + "],AXIS[\"Up\",UP]]]";
+         height_unit_name(metres) + "\"," + digits_of(metres) + "],AXIS[\"Up\",UP]]]";
 }
 
 }  // namespace swath::core

@@ -16,6 +16,9 @@ bool is_same_unit(double a, double b);
 /// Name that PROJ and GIS know a unit of `metres` by: "metre", "foot", "US survey foot"; "height unit" for any other.
 std::string height_unit_name(double metres);
 
+/// Its symbol, as bands of rasters, axes of charts and tables of values have it: "m", "ft", "ftUS"; "units of 0.201168 m" for any other.
+std::string unit_symbol(double metres);
+
 /// Metres of a unit by the names that files have for it: "m", "metre", "meter", "ft", "foot", "US survey foot", "us-ft", "ftUS" ...;
 /// nothing for any other.
 std::optional<double> metres_of_unit_name(std::string_view name);

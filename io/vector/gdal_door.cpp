@@ -21,6 +21,7 @@
 
 #include "core/error.h"
 #include "core/geo/crs.h"
+#include "core/geo/height_unit.h"
 #include "core/printable.h"
 #include "io/store/address.h"
 #include "io/store/object.h"
@@ -33,14 +34,6 @@ void catch_message(CPLErr kind, CPLErrorNum, const char* message) {
   auto* messages = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
   if (kind == CE_Debug || kind == CE_None || !messages) return;
   messages->note(kind >= CE_Failure, message);
-}
-
-/// Names as the unit type of GeoTIFF bands is written and as GIS show it.
-std::string short_unit(const std::string& name, double si) {
-  if (si == 1.0) return "m";
-  if (std::abs(si - 0.3048) < 1e-12) return "ft";
-  if (std::abs(si - 1200.0 / 3937.0) < 1e-12) return "US survey foot";
-  return name;
 }
 
 constexpr const char* raster_drivers[] = {"GTiff", "VRT", "AAIGrid", "GSBG",    "GS7BG", "GTX",  "EHdr", "ENVI", "HFA",
@@ -286,8 +279,8 @@ CrsFacts crs_facts(const std::string& text) {
   facts.geographic = crs.is_geographic();
   facts.ellipsoidal = crs.heights() == core::Heights::ellipsoidal;
   facts.name = crs.name();
-  facts.unit = facts.geographic ? "degree" : short_unit(crs.unit_name(), crs.metres_per_unit());
-  facts.vertical_unit = short_unit(crs.vertical_unit_name(), crs.vertical_metres_per_unit());
+  facts.unit = facts.geographic ? "degree" : core::unit_symbol(crs.metres_per_unit());
+  facts.vertical_unit = core::unit_symbol(crs.vertical_metres_per_unit());
   facts.vertical_name = crs.vertical_name();
   srs.StripVertical();
   srs.DemoteTo2D(nullptr);

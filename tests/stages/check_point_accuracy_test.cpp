@@ -119,7 +119,7 @@ TEST(CheckPointFiles, NamesAndCoversAreOneFieldEach) {
   m.add("=1+1", 0.02);
   write_marks(w.context, "marks", m.list, m.found, {});
   const std::string table = test::read_bytes(w.folder / "products/marks.csv");
-  EXPECT_NE(table.find("\"A \"\"7\"\"\",600000.000,5300000.000,400.000,0.0200,\"grass, short\",0.0100,,0.0300,0.0000,\n"),
+  EXPECT_NE(table.find("\"A \"\"7\"\"\",600000.000,5300000.000,400.000,0.0200,\"grass, short\",0.0100,,0.0300,0.0000,,metre,metre,metre\n"),
             std::string::npos)
       << table;
   EXPECT_NE(table.find("p2,600001.000,5300000.000,400.000,0.0200,'=1+1,"), std::string::npos) << table;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/geo/height_unit.h"
 #include "io/raster/geotiff.h"
 #include "io/text/value_file.h"
 #include "pipeline/provenance.h"
@@ -18,23 +19,17 @@ using core::Value;
 
 constexpr double metres_per_degree = 111319.49;  // along the equator of WGS84
 
-std::string short_unit(const std::string& name) {
-  if (name == "metre" || name == "meter") return "m";
-  if (name == "US survey foot") return "ftUS";
-  return name == "foot" ? "ft" : name;
-}
-
 /// Name and units of the CRS, and metres in one unit east, north and up (degrees: in the middle of the data).
 Value crs_table(const core::Crs& crs, double north) {
   Value out = Value::object();
   double east_m = 1.0, north_m = 1.0, up_m = 1.0;
   out["name"] = crs.empty() ? std::string("no coordinate reference system is stated") : crs.name();
-  out["unit"] = crs.empty() ? std::string() : crs.is_geographic() ? std::string("deg") : short_unit(crs.unit_name());
+  out["unit"] = crs.empty() ? std::string() : crs.is_geographic() ? std::string("deg") : core::unit_symbol(crs.metres_per_unit());
   // As everywhere in LAS, heights without a stated unit are in that of the plane.
   const bool in_metres = !crs.empty() && crs.is_geographic() && !crs.has_height_unit();
   out["heightUnit"] = crs.empty() ? std::string()
                       : in_metres ? std::string("m")
-                                  : short_unit(crs.has_height_unit() ? crs.vertical_unit_name() : crs.unit_name());
+                                  : core::unit_symbol(crs.has_height_unit() ? crs.vertical_metres_per_unit() : crs.metres_per_unit());
   if (!crs.empty() && crs.is_geographic()) {
     north_m = metres_per_degree;
     east_m = metres_per_degree * std::cos(north * 3.14159265358979323846 / 180.0);

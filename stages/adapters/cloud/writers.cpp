@@ -7,6 +7,7 @@
 
 #include "core/config/units.h"
 #include "core/error.h"
+#include "core/geo/height_unit.h"
 #include "core/time.h"
 #include "io/copc/tile_index.h"
 #include "io/vector/named_areas.h"
@@ -158,7 +159,7 @@ void write_surfaces(const TileJob& job, const Context& context) {
     const core::Grid grid = s.has_quality || is_height ? in_crs_units(context, in_metres) : core::Grid();
     const TileRasters out{context, std::string(name_of(s.product))};
     if (!s.has_quality) {
-      const std::string unit(is_height ? (context.vertical_unit == 1.0 ? "m" : "ft") : s.unit);
+      const std::string unit = is_height ? core::unit_symbol(context.vertical_unit) : std::string(s.unit);
       out.write(job.key, in_metres.lattice, {{std::string(s.band), unit, is_height ? &grid.height : &in_metres.height}});
       continue;
     }
@@ -266,8 +267,8 @@ std::optional<PictureFindings> draw_picture(const MergeJob& job, const Context& 
 
   report::PictureOptions o = options;
   if (o.title.empty()) o.title = context.survey.name;
-  o.unit = context.crs.unit_name() == "metre" ? "m" : "ft";
-  o.height_unit = context.vertical_unit == 1.0 ? "m" : "ft";
+  o.unit = core::unit_symbol(context.unit);
+  o.height_unit = core::unit_symbol(context.vertical_unit);
   o.light.exaggeration *= context.vertical_unit / context.unit;
   std::vector<core::ContourLine> lines;
   if (const fs::path contours = context.made(options.contours); !options.contours.empty() && !contours.empty()) {

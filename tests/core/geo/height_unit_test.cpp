@@ -32,6 +32,11 @@ TEST(HeightUnit, IsKnownByItsNamesInFiles) {
   EXPECT_FALSE(metres_of_unit_name("unknown") || metres_of_unit_name(""));
 }
 
+TEST(HeightUnit, HasASymbolThatIsReadAgain) {
+  for (const double metres : {1.0, 0.3048, 1200.0 / 3937.0}) EXPECT_EQ(metres_of_unit_name(unit_symbol(metres)), metres);
+  EXPECT_EQ(unit_symbol(0.201168), "units of 0.201168 m");
+}
+
 TEST(HeightUnit, TheTwoFeetAreTwoUnits) {
   EXPECT_FALSE(is_same_unit(0.3048, 1200.0 / 3937.0));
   EXPECT_TRUE(is_same_unit(0.304800609601, 1200.0 / 3937.0));

@@ -115,7 +115,7 @@ TEST(GeoTiff, FeetStayFeetInBothParts) {
   const core::Grid g = made_grid(20, 20, 2.0);
   write_grid(folder / "a.tif", g, "EPSG:2263+6360");
   const RasterInfo info = read_raster_info(folder / "a.tif");
-  EXPECT_EQ(info.units.at(0), "US survey foot");
+  EXPECT_EQ(info.units.at(0), "ftUS");
   EXPECT_EQ(info.types.at(0), "Float32");
   EXPECT_NE(info.crs_wkt.find("COMPOUNDCRS"), std::string::npos);
   EXPECT_NE(info.crs_wkt.find("US survey foot"), std::string::npos);

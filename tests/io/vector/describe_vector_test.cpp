@@ -23,7 +23,7 @@ TEST(DescribeVector, ContoursOfThisProgram) {
   EXPECT_EQ(gpkg.find("format")->as_text(), "GeoPackage");
   const core::Value& lines = gpkg.find("layers")->items()[0];
   EXPECT_EQ(lines.find("name")->as_text(), "contours");
-  EXPECT_EQ(lines.find("heights")->as_text(), "ellipsoidal height") << "as the layer's description says";
+  EXPECT_EQ(lines.find("heights")->as_text(), "height system not stated");
   EXPECT_EQ(lines.find("features")->as_int(), 2);
   EXPECT_EQ(lines.find("height")->items()[1].as_number(), 412);
   EXPECT_EQ(lines.find("x")->items()[1].as_number(), 500020);
@@ -33,6 +33,14 @@ TEST(DescribeVector, ContoursOfThisProgram) {
   EXPECT_EQ(dxf.find("format")->as_text(), "DXF");
   EXPECT_NE(dxf.find("comments")->items()[1].as_text().find("height system not stated"), std::string::npos);
   EXPECT_EQ(describe_vector(folder / "a.geojson").find("layers")->items()[0].find("features")->as_int(), 2);
+}
+
+TEST(DescribeVector, HeightsOfFlatLinesAreThoseOfTheDescription) {
+  const test::TemporaryFolder folder;
+  ContourWriter writer(folder / "a.gpkg", "EPSG:32632", "ellipsoidal height");
+  writer.add(line(410));
+  writer.close();
+  EXPECT_EQ(describe_vector(folder / "a.gpkg").find("layers")->items()[0].find("heights")->as_text(), "ellipsoidal height");
 }
 
 TEST(DescribeVector, TextAndNonsenseAreNone) {

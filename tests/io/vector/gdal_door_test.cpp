@@ -83,8 +83,8 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
   EXPECT_EQ(feet.unit, "ft");
   EXPECT_EQ(feet.vertical_unit, "m");                  // where nothing says otherwise
   const CrsFacts mixed = crs_facts("EPSG:2263+6360");  // New York Long Island (ftUS) + NAVD88 (ftUS)
-  EXPECT_EQ(mixed.unit, "US survey foot");
-  EXPECT_EQ(mixed.vertical_unit, "US survey foot");
+  EXPECT_EQ(mixed.unit, "ftUS");
+  EXPECT_EQ(mixed.vertical_unit, "ftUS");
   EXPECT_EQ(crs_facts("EPSG:2263+5703").vertical_unit, "m");
 
   const CrsFacts ellipsoidal = crs_facts("EPSG:32632+ellipsoidal");

@@ -132,8 +132,8 @@ TEST(Vector, FeetAreNamedAndKept) {
   const test::TemporaryFolder folder;
   write_contours({folder / "a.gpkg", folder / "a.dxf", folder / "a.geojson"}, made_lines(), "EPSG:2263+6360");
   EXPECT_EQ(read_lines(folder / "a.geojson").lines[1].height, 420.5);
-  EXPECT_NE(test::read_bytes(folder / "a.geojson").find("\"height_unit\": \"US survey foot\""), std::string::npos);
-  EXPECT_NE(test::read_bytes(folder / "a.dxf").find("elevations in US survey foot"), std::string::npos);
+  EXPECT_NE(test::read_bytes(folder / "a.geojson").find("\"height_unit\": \"ftUS\""), std::string::npos);
+  EXPECT_NE(test::read_bytes(folder / "a.dxf").find("elevations in ftUS"), std::string::npos);
   EXPECT_NE(read_lines(folder / "a.gpkg").crs_wkt.find("US survey foot"), std::string::npos);
 }
 
