@@ -27,7 +27,7 @@ constexpr std::string_view box_code = "points.outside_box", damage_code = "work.
                            outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise",
                            events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
                            duplicates_code = "clouds.duplicates", unflown_code = "laser.outside_trajectory",
-                           no_line_code = "laser.outside_lines", calibration_code = "calib.finding";
+                           no_line_code = "laser.outside_lines", calibration_code = "calib.finding", memory_code = "run.memory";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
 constexpr double warned_duplicates = 1e-3;                     // of the first returns
@@ -210,6 +210,8 @@ std::vector<Warning> warnings_in(const Value& report) {
   if (const Value* unused = report.find("control_unused"))
     for (const Value& file : unused->items())
       out.push_back({std::string(control_code), "[[control]] " + file.as_text() + " is used by no stage of this run", {}});
+  if (const Value* over = report.find("over_memory"))
+    for (const Value& stage : over->items()) out.push_back({std::string(memory_code), stage.as_text(), {}});
   if (const Value* geometry = report.find("geometry")) add_geometry(*geometry, out);
   if (const Value* limits = report.find("limits"))
     for (Warning& w : missed_limits(*limits, report.find("stages"))) out.push_back(std::move(w));

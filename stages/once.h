@@ -204,6 +204,7 @@ struct OnceExtras {
   void (*check)(const Context&, const O&) = nullptr;                          ///< as Stage::check
   std::vector<std::filesystem::path> (*inputs)(const io::Survey&) = nullptr;  ///< as Stage::inputs
   std::vector<std::string> (*products)(const O&) = nullptr;                   ///< as Stage::products
+  double (*memory)(const Context&, const O&) = nullptr;                       ///< as Stage::survey_memory
   std::vector<Product> needs{}, gives{};                                      ///< beside records: what lies in files
 };
 
@@ -235,6 +236,7 @@ class OnceStage : public OptionStage<typename Signature<decltype(function)>::Opt
   std::vector<std::string> products() const override {
     return extras_.products ? extras_.products(this->options) : std::vector<std::string>{};
   }
+  double survey_memory(const Context& c) const override { return extras_.memory ? extras_.memory(c, this->options) : 0.0; }
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     Site site{context, tally};
     findings = Result::keep(site, Function::call(function, site, this->options));

@@ -205,6 +205,8 @@ class Stage {
   /// Conditions that only the survey can settle; faults are thrown as core::Error before any byte is read.
   virtual void check(const Context&) const {}
 
+  /// About the bytes that a survey stage takes beside the records given to it; 0: few.
+  virtual double survey_memory(const Context&) const { return 0.0; }
   virtual void run_survey(Context&, core::Tally&, core::Value& /*findings*/) const {}
 
   virtual bool is_source() const { return false; }

@@ -101,6 +101,7 @@ core::Value report_of(const RunState& run, const std::string& command, const Tim
   r.versions = versions();
   r.limits = judged(run.plan.run.limits, measured(run));
   r.control_unused = unused_control(run.plan);
+  r.over_memory = run.over_memory;
   r.pieces_resumed = run.resumed;
   r.pieces_damaged = run.damaged;
   r.strips_read_again = run.read_again;

@@ -83,7 +83,7 @@ struct RunReport {
   std::vector<StageReport> stages;
   std::vector<JudgedLimit> limits;
   std::vector<Warning> warnings;
-  std::vector<std::string> control_unused{};
+  std::vector<std::string> control_unused{}, over_memory{};
   std::uint64_t pieces_resumed = 0, pieces_damaged = 0, strips_read_again = 0;
   TimeSpent time{};
   int threads = 0;
@@ -104,6 +104,8 @@ void describe(const RunReport& r, V& v) {
   v.tables("warnings", r.warnings, "What a person should look at.");
   v.result("control_unused", r.control_unused, core::plain().only_if(!r.control_unused.empty()),
            "Files of [[control]] that no stage of the run uses, with what they are for.");
+  v.result("over_memory", r.over_memory, core::plain().only_if(!r.over_memory.empty()),
+           "Stages that took more than the default of run.memory, with about how much.");
   v.result("pieces_resumed", r.pieces_resumed, "Pieces of work that an earlier run had done.");
   v.result("pieces_damaged", r.pieces_damaged, "Pieces of an earlier run that were damaged and made again.");
   v.result("strips_read_again", r.strips_read_again, core::if_any(),

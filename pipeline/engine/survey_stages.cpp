@@ -101,6 +101,17 @@ void prepare(RunState& run) {
   run.folders = run.fingerprints;
 }
 
+/// A budget that is stated is kept. The default is meant for tiles: where a survey stage takes more, the report says so.
+void expect_memory(RunState& run, size_t number) {
+  const std::string name(run.stage(number).info().name);
+  const double bytes = run.stage(number).survey_memory(run.context), left = run.memory.left();
+  if (bytes <= left) return;
+  if (run.plan.states_memory()) run.memory.require(bytes, left, name, true);
+  run.over_memory.push_back(name + " takes about " + core::format_quantity(core::Dimension::memory, std::ceil(bytes / 1e8) * 1e8) +
+                            " of memory; run.memory, which is not stated, is " +
+                            core::format_quantity(core::Dimension::memory, run.memory.bytes()));
+}
+
 void run_survey_stages(RunState& run) {
   for (size_t i = 0; i < run.plan.stages.size(); ++i) {
     if (!run.works_on(i, Grain::survey)) continue;
@@ -110,6 +121,7 @@ void run_survey_stages(RunState& run) {
     const bool resumed = is_resumed(run, i);
     if (run.share && run.share->wave > 0 && !resumed && !is_read_again(run, i))
       wave_too_early(run, std::string(run.stage(i).info().name) + " is missing");
+    if (!resumed) expect_memory(run, i);
     run.context.memory = run.memory.free();
     run.context.last_uses = last_uses(run, i);
     SurveyPiece piece = resumed

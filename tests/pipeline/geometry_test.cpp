@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/error.h"
 #include "io/text/output_file.h"
 #include "pipeline/run.h"
 #include "simulate/simulate.h"
@@ -105,6 +106,15 @@ const core::Value& strips_of(const Outcome& o) {
   for (const core::Value& stage : o.report.find("stages")->items())
     if (stage.find("type")->as_text() == "calib.strips") return *stage.find("findings");
   throw std::runtime_error("no calib.strips");
+}
+
+TEST_F(Geometry, AFlightThatDoesNotFitAStatedBudgetIsRefused) {
+  std::vector<std::string> sets{"calib.strips.corrections.spacing=\"2 ms\"", "calib.strips.tolerance=\"10 m\""};
+  const Outcome o = run_with("", "", sets, adjusting());
+  ASSERT_NE(o.report.find("over_memory"), nullptr);
+  EXPECT_TRUE(o.report.find("over_memory")->items().at(0).as_text().starts_with("calib.strips takes about "));
+  sets.push_back("run.memory=\"2 GB\"");
+  EXPECT_THROW(run_with("", "", sets, adjusting()), core::SystemError);
 }
 
 TEST_F(Geometry, HeightsAreNotJudgedByRoofs) {

@@ -13,7 +13,7 @@ namespace {
 
 TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   const core::Value report = io::parse_json(
-      R"json({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "stages": [{"type": "readers.las", "tally": {
+      R"json({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "over_memory": ["calib.network took 3 GB"], "stages": [{"type": "readers.las", "tally": {
           "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}},
           {"type": "readers.laser", "records": [{"name": "records", "read": 1000}], "tally": {"records outside every line, left out": {"count": 300}}},
           {"type": "georeference", "counts": {"in": 700, "out": 600}, "tally": {"outside the trajectory, left out": {"count": 100}}},

@@ -247,6 +247,15 @@ Corrections correct_strips(const Context& context, const trajectory::Trajectory&
   return std::move(stage.out);
 }
 
+double memory_of(const Context& c, const StripStageOptions& o) {
+  constexpr double bytes_per_unknown = 0.133e6;  // factor, inverse and observations (docs/performance.md, 20 and 50 lines)
+  constexpr double components = 6.0;
+  double time = 0.0;
+  for (const Strip& s : c.strips)
+    if (s.last_time > s.first_time) time += s.last_time - s.first_time;
+  return bytes_per_unknown * std::min(components * time / o.adjust.corrections.spacing.value, static_cast<double>(o.adjust.corrections.most));
+}
+
 }  // namespace
 
 Entry strips_stage() {
@@ -254,7 +263,7 @@ Entry strips_stage() {
       "calib.strips",
       "Strip adjustment: corrects the trajectory of a survey along its lines so that they meet on planes that several "
       "of them have seen, the calibration held; strips.json and report.html.",
-      {.inputs = files_in<&io::Survey::control>, .products = strip_products});
+      {.inputs = files_in<&io::Survey::control>, .products = strip_products, .memory = memory_of});
 }
 
 }  // namespace swath::stages

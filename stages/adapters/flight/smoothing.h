@@ -16,6 +16,9 @@ namespace swath::stages {
 /// Throws a usage error where the survey does not say how good its IMU is; `stage`: who asks.
 void require_imu_spec(const io::Survey& survey, const std::string& stage);
 
+/// About the bytes that smooth_records() takes beside its records (docs/performance.md, measured for an hour and for four).
+double smoothing_memory(const core::ImuData& imu, const trajectory::InsGnssOptions& o);
+
 /// trajectory::smooth() with what the survey states of antenna, IMU and clocks.
 trajectory::InsGnssResult smooth_records(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
                                          const trajectory::InsGnssOptions& options, const core::OnProgress& progress,
