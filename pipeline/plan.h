@@ -63,7 +63,6 @@ struct PlannedStage {
 struct Plan {
   std::filesystem::path config;
   RunOptions run;
-  bool states_memory() const { return run_table.find("memory") != nullptr; }  ///< run.memory is not the default
   core::Value run_table;                          ///< as written
   core::Value run_flags = core::Value::object();  ///< of [run] what flags of the command line set
   std::filesystem::path survey_file;              ///< empty: none was named; "command line" for one that no file holds

@@ -46,10 +46,10 @@ struct RunState {
   size_t last_strip_stage = 0;
   std::unique_ptr<TileStore> store;
   std::unique_ptr<SquareCounts> squares;
-  std::set<TileKey> surface_tiles;  ///< without a point of their own, but a surface reaches into them from their neighbours
-  bool has_products = false;        ///< of a tile stage that is finished
-  std::optional<Share> share;       ///< what this process does where several do the run together
-  std::vector<std::string> over_memory;  ///< survey stages that take more than is free, where no budget is stated
+  std::set<TileKey> surface_tiles;       ///< without a point of their own, but a surface reaches into them from their neighbours
+  bool has_products = false;             ///< of a tile stage that is finished
+  std::optional<Share> share;            ///< what this process does where several do the run together
+  std::vector<std::string> over_memory;  ///< survey stages that take more than is free, with the default budget
   std::uint64_t resumed = 0, damaged = 0, read_again = 0;
 
   const stages::Stage& stage(size_t number) const { return *plan.stages[number].stage; }

@@ -101,14 +101,14 @@ void prepare(RunState& run) {
   run.folders = run.fingerprints;
 }
 
-/// A budget that is stated is kept. The default is meant for tiles: where a survey stage takes more, the report says so.
+/// The default budget is meant for tiles: where a survey stage takes more, the report says so. Any other is kept.
 void expect_memory(RunState& run, size_t number) {
   const std::string name(run.stage(number).info().name);
   const double bytes = run.stage(number).survey_memory(run.context), left = run.memory.left();
   if (bytes <= left) return;
-  if (run.plan.states_memory()) run.memory.require(bytes, left, name, true);
+  if (run.memory.bytes() != RunOptions().memory.value) run.memory.require(bytes, left, name, true);
   run.over_memory.push_back(name + " takes about " + core::format_quantity(core::Dimension::memory, std::ceil(bytes / 1e8) * 1e8) +
-                            " of memory; run.memory, which is not stated, is " +
+                            " of memory, more than the default of run.memory, " +
                             core::format_quantity(core::Dimension::memory, run.memory.bytes()));
 }
 

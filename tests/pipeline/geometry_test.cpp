@@ -108,12 +108,12 @@ const core::Value& strips_of(const Outcome& o) {
   throw std::runtime_error("no calib.strips");
 }
 
-TEST_F(Geometry, AFlightThatDoesNotFitAStatedBudgetIsRefused) {
+TEST_F(Geometry, AFlightThatDoesNotFitAnyBudgetButTheDefaultIsRefused) {
   std::vector<std::string> sets{"calib.strips.corrections.spacing=\"2 ms\"", "calib.strips.tolerance=\"10 m\""};
   const Outcome o = run_with("", "", sets, adjusting());
   ASSERT_NE(o.report.find("over_memory"), nullptr);
   EXPECT_TRUE(o.report.find("over_memory")->items().at(0).as_text().starts_with("calib.strips takes about "));
-  sets.push_back("run.memory=\"2 GB\"");
+  sets.push_back("run.memory=\"1.9 GB\"");
   EXPECT_THROW(run_with("", "", sets, adjusting()), core::SystemError);
 }
 

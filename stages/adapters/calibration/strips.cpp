@@ -253,7 +253,8 @@ double memory_of(const Context& c, const StripStageOptions& o) {
   double time = 0.0;
   for (const Strip& s : c.strips)
     if (s.last_time > s.first_time) time += s.last_time - s.first_time;
-  return bytes_per_unknown * std::min(components * time / o.adjust.corrections.spacing.value, static_cast<double>(o.adjust.corrections.most));
+  return bytes_per_unknown *
+         std::min(components * time / o.adjust.corrections.spacing.value, static_cast<double>(o.adjust.corrections.most));
 }
 
 }  // namespace
