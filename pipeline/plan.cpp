@@ -8,6 +8,7 @@
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "core/geo/map_axes.h"
 #include "io/survey/read_survey.h"
 #include "io/survey/record_checks.h"
 #include "io/survey/tree_kind.h"
@@ -282,6 +283,11 @@ void describe(const Origin& o, V& v) {
   v.result("from", o.from, "Where it was set; default: nowhere.");
 }
 
+bool takes_points(const PlannedStage& s) {
+  const auto& grains = s.stage->info().grains;
+  return std::any_of(grains.begin(), grains.end(), [](stages::Grain g) { return g != stages::Grain::survey; });
+}
+
 /// Sets {"key": {"value", "from"}} for each effective option of a table.
 Value with_origin(const core::Describe& d, const Value& written) {
   const std::function<Value(const Value&, const Value*)> walk = [&](const Value& effective, const Value* given) {
@@ -361,21 +367,15 @@ Plan make_plan(const Request& request) {
   return plan;
 }
 
-bool works_on_the_map(const Plan& plan) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const PlannedStage& s) {
-    const auto& grains = s.stage->info().grains;
-    return std::any_of(grains.begin(), grains.end(), [](stages::Grain g) { return g != stages::Grain::survey; });
-  });
-}
+bool works_on_the_map(const Plan& plan) { return std::any_of(plan.stages.begin(), plan.stages.end(), takes_points); }
 
 bool makes_points(const Plan& plan) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const PlannedStage& s) {
-    const auto& grains = s.stage->info().grains;
-    return !s.stage->is_source() && std::any_of(grains.begin(), grains.end(), [](stages::Grain g) { return g != stages::Grain::survey; });
-  });
+  return std::any_of(plan.stages.begin(), plan.stages.end(),
+                     [](const PlannedStage& s) { return !s.stage->is_source() && takes_points(s); });
 }
 
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey) {
+  core::require_easting_northing(crs, survey.string() + ": crs");
   if (crs.is_projected()) return;
   throw core::usage_error("the products' CRS is " + crs.name() + ", which is not a map projection", survey.string() + ": crs",
                           "choose a projected CRS, for example the UTM zone EPSG:326xx");

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/geo/geodesy.h"
+#include "core/geo/map_axes.h"
 
 namespace swath::calib {
 
@@ -24,6 +25,7 @@ BlockFrame::BlockFrame(const std::string& crs, const Vector3d& middle) : middle_
     return;
   }
   const core::Crs map(crs);
+  core::require_easting_northing(map, "crs");  // angles count from the grid's north
   to_ecef_ = std::make_shared<core::Transform>(map, core::wgs84_ecef());
   from_ecef_ = std::make_shared<core::Transform>(core::wgs84_ecef(), map);
   origin_ = (*to_ecef_)(middle);

@@ -7,6 +7,7 @@
 #include "core/area.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "core/geo/map_axes.h"
 #include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -55,6 +56,7 @@ core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
   if (!o.dem.empty()) take(io::read_raster_info(o.dem).crs_wkt);
   if (!o.area.empty()) take(io::read_lines(o.area).crs_wkt);
   if (crs.empty()) throw core::usage_error("the CRS is not known", config.string(), "state it: crs = \"EPSG:25832\"");
+  core::require_easting_northing(crs, config.string());
   if (!crs.is_projected() || crs.metres_per_unit() != 1.0)
     throw core::usage_error("a plan needs a projected CRS in metres, " + crs.name() + " is none", config.string(),
                             "state another: crs = \"EPSG:25832\"");

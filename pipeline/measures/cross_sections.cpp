@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/geo/map_axes.h"
 #include "core/geo/same_map.h"
 #include "core/printable.h"
 #include "io/raster/geotiff.h"
@@ -34,6 +35,7 @@ struct Model {
     const io::RasterInfo info = io::read_raster_info(f);
     lattice = io::lattice_of(info, f);
     if (!info.crs_wkt.empty()) crs = core::Crs(info.crs_wkt);
+    core::require_easting_northing(crs, f.string());
     unit = io::height_unit_of(f);
   }
   std::vector<double> heights(const std::vector<Vector2d>& at) const {

@@ -9,6 +9,7 @@
 
 #include "core/config/units.h"
 #include "core/error.h"
+#include "core/geo/map_axes.h"
 #include "simulate/random.h"
 
 namespace swath::simulate {
@@ -41,6 +42,7 @@ MapPatch::MapPatch(const core::Crs& crs, const core::Geodetic& origin, double ha
   if (!crs.is_projected() || std::abs(crs.metres_per_unit() - 1.0) > 1e-12 || std::abs(crs.vertical_metres_per_unit() - 1.0) > 1e-12)
     throw core::usage_error("a survey is simulated in a projected CRS in metres, which " + crs.name() + " is not", "crs",
                             "EPSG:32632 (UTM zone 32 N) and the like");
+  core::require_easting_northing(crs, "crs");
   const core::Transform map_T_ecef(core::wgs84_ecef(), crs);
   origin_ecef_ = core::ecef_of(origin);
   const Eigen::Matrix3d ecef_R_ned = core::ecef_R_ned(origin.latitude, origin.longitude);

@@ -199,6 +199,19 @@ TEST(Plan, SurveyStagesAloneNeedNoSourceAndNoMap) {
   EXPECT_NE(c.fault().find("not a map projection"), std::string::npos);
 }
 
+TEST(Plan, AMapOfSouthingsIsRefused) {
+  Case c(good);
+  c.request.survey = c.folder / "survey.toml";
+  const std::string cloud = "[[points]]\nfile = \"cloud.las\"\ncrs = \"EPSG:5513\"\n";
+  for (const std::string& survey : {"crs = \"EPSG:5513\"\n" + cloud, cloud}) {
+    test::write_bytes(c.folder / "survey.toml", survey);
+    EXPECT_NE(c.fault().find("southing and westing"), std::string::npos) << c.fault();
+    EXPECT_NE(c.fault().find("EPSG:5514"), std::string::npos) << c.fault();
+  }
+  test::write_bytes(c.folder / "survey.toml", "crs = \"EPSG:5514\"\n" + cloud);
+  EXPECT_EQ(c.fault(), "");
+}
+
 TEST(Plan, TheLongestNameOfAStageIsMeant) {
   Case c(std::string(good) + "[[stage]]\ntype = \"quality.swath\"\n[[stage]]\ntype = \"report.quality\"\n");
   c.request.sets = {"quality.swath.anps=5m", "quality.limits.nva=\"1 m\""};

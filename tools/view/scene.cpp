@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/geo/height_unit.h"
+#include "core/geo/map_axes.h"
 #include "io/raster/geotiff.h"
 #include "io/text/value_file.h"
 #include "pipeline/provenance.h"
@@ -112,6 +113,7 @@ Scene make_scene(const ProductFiles& files, const SceneOptions& options, const c
   if (!crs.empty() && crs.is_geocentric())
     throw core::Error("coordinates are geocentric (" + crs.name() + "), and a page shows a map", files.clouds.front().string(),
                       "bring them to a CRS of the map first: swath run configs/cloud.toml, and view its output");
+  core::require_easting_northing(crs, (files.clouds.empty() ? files.terrain : files.clouds.front()).string());
   if (!files.trajectory.empty() && !crs.empty()) try {
       add_trajectory(scene, files.trajectory, crs);
     } catch (const core::Error& e) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/error.h"
+
 namespace swath::calib {
 namespace {
 
@@ -39,6 +41,12 @@ TEST(BlockFrame, GridNorthIsTurnedByTheConvergence) {
   const Vector3d step = frame.local_of(at + Vector3d(0, 10, 0)) - frame.local_of(at);
   EXPECT_NEAR(std::atan2(step.x(), step.y()), convergence, 2e-6);
   EXPECT_NEAR(grid_north.z(), 0.0, 1e-12);
+}
+
+TEST(BlockFrame, AnglesCountFromANorthingAxis) {
+  // A map of southing and westing is a mirror image: no rotation turns it to the ground.
+  EXPECT_THROW(BlockFrame("EPSG:5513+ellipsoidal", {1117832, 674238, 300}), core::Error);
+  EXPECT_NO_THROW(BlockFrame("EPSG:5514+ellipsoidal", {-674238, -1117832, 300}));
 }
 
 }  // namespace

@@ -49,6 +49,14 @@ TEST(CrossSections, ALevelDesignInASlopeCutsOneSideAndFillsTheOther) {
             std::string::npos);
 }
 
+TEST(CrossSections, BearingsNeedANorthingAxis) {
+  const test::TemporaryFolder folder;
+  write_plane(folder / "dtm.tif", 0.1, "EPSG:2048");
+  CrossSectionRequest r = request(folder);
+  r.level = 105.0;
+  EXPECT_THROW(write_cross_sections(r), core::Error);
+}
+
 TEST(CrossSections, TheAxisThatIsReadIsNotWrittenOverAndItsNameIsOneField) {
   const test::TemporaryFolder folder;
   write_plane(folder / "dtm.tif", 0.0, "EPSG:32632");

@@ -38,6 +38,7 @@ TEST(MapPatch, ConvergenceOfUtm) {
 TEST(MapPatch, RefusesCrsThatAreNoMap) {
   EXPECT_THROW(MapPatch(core::Crs("EPSG:4979"), origin, 500, 500, 700), core::Error);
   EXPECT_THROW(MapPatch(core::Crs("EPSG:2263"), origin, 500, 500, 700), core::Error);
+  EXPECT_THROW(MapPatch(core::Crs("EPSG:2048"), origin, 500, 500, 700), core::Error);  // westing, southing: its north is south
 }
 
 }  // namespace
