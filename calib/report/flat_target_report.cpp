@@ -169,7 +169,8 @@ void describe(const Details& r, V& v) {
           given(t.done && (t.range_determined || !t.range_readings.empty()), RangeInDetail{range_offset_of(t), t.range_readings}),
           "Range offset.");
   v.table("scan_scale", scan_scale_of(t), "Scale of the scan angles by widths and places of the target.");
-  v.result("findings", t.findings, "What is not determined, as sentences.");
+  v.result("findings", t.findings, "What is not determined or looks wrong, as sentences that end with what to do.");
+  v.result("notes", t.notes, "What is right, or was allowed for, as sentences.");
   v.result("returns", t.returns, "Returns read.");
   v.result("rounds", t.rounds, core::plain().only_if(t.done), "Rounds of measuring and correcting.");
   v.table("jointly", given(t.done, Jointly{t}), "All parameters at once, by least squares.");
@@ -265,7 +266,9 @@ void describe(const FlatTarget& t, core::ResultVisitor& v) {
   for (const auto& [name, a] : angles_of(t)) v.table(name, given(t.done, a), "Boresight angle.");
   v.table("range_offset", given(t.done && t.range_determined, range_offset_of(t)), "Range offset.");
   v.table("scan_scale", scan_scale_of(t), "Scale of the scan angles by widths and places of the target.");
-  v.result("findings", t.findings, core::plain().in_summary(), "What is not determined, as sentences.");
+  v.result("findings", t.findings, core::plain().in_summary(),
+           "What is not determined or looks wrong, as sentences that end with what to do.");
+  v.result("notes", t.notes, "What is right, or was allowed for, as sentences.");
 }
 
 core::Value value_of(const FlatTarget& t) { return core::reported(Details{t}); }

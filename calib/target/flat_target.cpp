@@ -84,7 +84,8 @@ class Analysis {
       target = find_roof(shots, start, trajectory_, search, {options_.stands_out.value, options_.shortest_side.value, 0.05, 2.0});
     if (!target) {
       say("no target: no surveyed one is a level roof, and no flat level roof of " + words("%.0f m", options_.shortest_side.value) +
-          " that stands out of its surroundings was found in any line");
+          " that stands out of its surroundings was found in any line: survey a level roof's corners as [[control]], or lower "
+          "calib.flat_target.stands_out and shortest_side");
       return out_;
     }
     out_.target = *target;
@@ -176,9 +177,11 @@ class Analysis {
     }
     out_.rounds = std::min(out_.rounds, options_.rounds);
     if (m.lines.empty()) {
-      say("no line sees the target");
+      std::string why;
       for (const TargetLine& l : out_.lines)
-        if (!l.before.why_not.empty()) say("line " + std::to_string(l.line) + ": " + l.before.why_not);
+        if (!l.before.why_not.empty()) why += (why.empty() ? " (line " : ", line ") + std::to_string(l.line) + " " + l.before.why_not;
+      say("no line sees the target" + (why.empty() ? "" : why + ")") +
+          ": check its place against the flight lines, and widen calib.flat_target.search");
       return;
     }
     out_.done = true;
@@ -194,7 +197,9 @@ class Analysis {
         }
     }
     conclude(angles, cal);
-    for (std::string& f : target_findings(out_, angles, m, present_, steady)) out_.findings.push_back(std::move(f));
+    TargetFindings said = target_findings(out_, angles, m, present_, steady);
+    std::move(said.findings.begin(), said.findings.end(), std::back_inserter(out_.findings));
+    out_.notes = std::move(said.notes);
   }
 
   /// An unsurveyed target: the mean of the lines that see it whole.

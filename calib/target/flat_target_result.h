@@ -50,7 +50,8 @@ struct FlatTarget {
   double scan_scale = 1.0, scan_scale_sigma = 0.0;                  ///< by widths and places of the target
   core::Calibration calibration;                                    ///< new values where beyond the tolerance
   core::Calibration measured;                                       ///< the mean readings themselves
-  std::vector<std::string> findings;                                ///< in words
+  std::vector<std::string> findings;                                ///< what is not determined or looks wrong, and what to do
+  std::vector<std::string> notes;                                   ///< what is right, or was allowed for
   int rounds = 0;
   std::uint64_t returns = 0;
 };

@@ -26,8 +26,9 @@ FlatTarget analyse(const BoxFlight& f, const core::Calibration& in_force, const 
 }
 
 bool says(const FlatTarget& t, const std::string& what) {
-  for (const std::string& f : t.findings)
-    if (f.find(what) != std::string::npos) return true;
+  for (const auto* said : {&t.findings, &t.notes})
+    for (const std::string& f : *said)
+      if (f.find(what) != std::string::npos) return true;
   return false;
 }
 std::string all_of(const FlatTarget& t) {
@@ -151,7 +152,7 @@ TEST(FlatTarget, SaysWhichPassIsMissing) {
   ASSERT_TRUE(t.done);
   EXPECT_FALSE(t.pitch.determined);
   EXPECT_FALSE(t.roll.determined);
-  EXPECT_TRUE(says(t, "pitch is not determined: no two lines in opposite directions")) << all_of(t);
+  EXPECT_TRUE(says(t, "pitch is not determined, no two lines in opposite directions")) << all_of(t);
   EXPECT_TRUE(says(t, "roll is not determined")) << all_of(t);
   EXPECT_EQ(t.calibration.pitch.value, 0.0);
   f.lines = {{1, a, 0.0, 700.0}, {2, a + core::pi, 0.0, 700.0}, {3, a, 900.0, 700.0}};
@@ -159,7 +160,7 @@ TEST(FlatTarget, SaysWhichPassIsMissing) {
   EXPECT_TRUE(t.pitch.determined);
   EXPECT_FALSE(t.heading.determined);
   EXPECT_TRUE(says(t, "heading is not determined")) << all_of(t);
-  EXPECT_TRUE(says(t, "line 3 takes no part: no returns near the target")) << all_of(t);
+  EXPECT_TRUE(says(t, "line 3 takes no part, no returns near the target")) << all_of(t);
   // Half of the roof lies beyond the swath.
   f.lines = {{1, a, 0.0, 700.0}, {2, a + core::pi, 0.0, 700.0}, {3, a, 250.0, 700.0}, {4, a + core::pi, 250.0, 700.0}};
   t = analyse(f, {});
