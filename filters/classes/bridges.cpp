@@ -24,6 +24,7 @@ constexpr int widest_gap = 3;              // cells without any return that a wa
 constexpr int bank = 10;                   // cells from a deck's end to ground at its level
 constexpr double ends_of_clearance = 0.4;  // at most
 constexpr int open_gap = 5;                // cells without any return beside a deck
+constexpr int bank_shown = 4;              // cells beyond it, beside a deck's ends, among which one return at least shows the bank
 constexpr int half_width = 25;             // cells to the side of a deck
 constexpr double fall = 1.0;               // m beside a deck
 constexpr int deck_growth = 5;             // links
@@ -36,10 +37,16 @@ constexpr double through_share = 0.25;     // of these
 
 /// A way that came to the ground's level.
 struct Way {
+  int direction = 0, cells = 0;                ///< where it came there
   double length = 0, clearance = 0, drop = 0;  ///< m; drop: from its end to the ground there
 };
 
-enum class Side : std::uint8_t { level, open, falls };  ///< open: no returns beside it, as over water
+enum class Beside : std::uint8_t { level, open, falls };  ///< open: no returns beside it, as over water
+
+struct Side {
+  Beside what = Beside::level;
+  int direction = 0, cells = 0;  ///< to its edge
+};
 
 /// Among the cells up to `ring` around, the value nearest to z; nothing where there is none.
 std::optional<size_t> nearest_level(const core::Lattice& l, const std::vector<float>& level, int i, int j, float z, int ring = 1) {
@@ -128,18 +135,23 @@ class Decks {
   bool is_deck(int i, int j) const {
     for (int d = 0; d < directions / 2; ++d) {
       const Side right = side(i, j, d + directions / 4);
-      if (right == Side::level) continue;
+      if (right.what == Beside::level) continue;
       const Side left = side(i, j, (d + 3 * directions / 4) % directions);
-      if (left == Side::level) continue;
+      if (left.what == Beside::level) continue;
       const auto one = way(i, j, d);
       if (!one) continue;
       const auto other = way(i, j, d + directions / 2);
       if (!other || one->length + other->length > limits_.longest) continue;
       const double clearance = std::max(one->clearance, other->clearance);
       if (clearance < fall) continue;  // crops beside a ditch
+      // Where the data end no beam comes back either, and not from the banks.
+      const auto ends_the_data = [&](const Side& s) {
+        return s.what == Beside::open && !(shows_bank(i, j, *one, s) && shows_bank(i, j, *other, s));
+      };
+      if (ends_the_data(right) || ends_the_data(left)) continue;
       // Hedges and sheds are as high at their ends as between them.
       const bool arches = std::max(one->drop, other->drop) <= std::max(limits_.step, ends_of_clearance * clearance);
-      const bool falls = right == Side::falls || left == Side::falls;
+      const bool falls = right.what == Beside::falls || left.what == Beside::falls;
       if (arches && (falls || clearance >= limits_.clearance)) return true;
       // No beam comes back from the water on both sides; there may be stairs at one end.
       if (!falls && std::min(one->drop, other->drop) <= limits_.step) return true;
@@ -147,10 +159,24 @@ class Decks {
     return false;
   }
 
+  /// Are there returns past the side's edge where the way ends, and a little on?
+  bool shows_bank(int i, int j, const Way& w, const Side& s) const {
+    const core::Lattice& l = cells_.lattice;
+    for (int n = w.cells; n <= std::min(w.cells + bank, reach_); ++n) {
+      const CellIndex along = ahead_[static_cast<size_t>(w.direction)][static_cast<size_t>(n)];
+      for (int k = s.cells + 2; k <= std::min(s.cells + 2 + bank_shown, reach_); ++k) {
+        const CellIndex out = ahead_[static_cast<size_t>(s.direction)][static_cast<size_t>(k)];
+        const int u = i + along.i + out.i, v = j + along.j + out.j;
+        if (l.holds(u, v) && !std::isnan(cells_.low[l.at(u, v)])) return true;
+      }
+    }
+    return false;
+  }
+
   std::optional<Way> way(int i, int j, int direction) const {
     const core::Lattice& l = cells_.lattice;
     float z = cells_.plane[l.at(i, j)];
-    Way w{0.0, static_cast<double>(cells_.height[l.at(i, j)]), 0.0};
+    Way w{direction, 0, 0.0, static_cast<double>(cells_.height[l.at(i, j)]), 0.0};
     int last = 0;
     for (int k = 1; k <= reach_; ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
@@ -163,6 +189,7 @@ class Decks {
         continue;
       }
       if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z)) {
+        w.cells = k;
         w.length = k * structure_cell;
         w.drop = static_cast<double>(std::abs(cells_.ground[*ground] - z));
         return w.drop <= limits_.end && reaches_level(i, j, direction, k, z) ? std::optional(w) : std::nullopt;
@@ -191,24 +218,24 @@ class Decks {
     bool seen = false;  // returns beside it, lower by less than a fall: crops
     for (int k = 1; k <= std::min(half_width + open_gap, reach_); ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
-      if (!l.holds(i + to.i, j + to.j)) return Side::level;  // unknown
+      if (!l.holds(i + to.i, j + to.j)) return {};  // unknown
       const double may = roughness + grade * structure_cell * (k - last);
       if (const auto next = nearest_level(l, cells_.plane, i + to.i, j + to.j, z); next && std::abs(cells_.plane[*next] - z) <= may) {
         z = cells_.plane[*next];
         last = k;
         seen = false;
-        if (last >= half_width) return Side::level;
+        if (last >= half_width) return {};
         continue;
       }
       const size_t c = l.at(i + to.i, j + to.j);
       seen = seen || !std::isnan(cells_.low[c]);
-      if (static_cast<double>(z - cells_.low[c]) >= fall) return Side::falls;
+      if (static_cast<double>(z - cells_.low[c]) >= fall) return {Beside::falls, direction, last};
       if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z);
           ground && std::abs(cells_.ground[*ground] - z) <= limits_.step)
-        return Side::level;
-      if (k - last > open_gap) return seen ? Side::level : Side::open;
+        return {};
+      if (k - last > open_gap) return {seen ? Beside::level : Beside::open, direction, last};
     }
-    return Side::level;
+    return {};
   }
 
   const StructureCells& cells_;
@@ -221,7 +248,9 @@ class Decks {
 
 double deck_spread() { return (deck_growth * structure_link + 1) * structure_cell; }
 
-double deck_cells_halo(double longest) { return deck_spread() + longest + 2 * structure_cell; }
+double deck_cells_halo(double longest) {
+  return deck_spread() + std::hypot(longest, (half_width + 2 + bank_shown) * structure_cell) + 2 * structure_cell;
+}
 
 std::vector<std::uint8_t> deck_cells(const StructureCells& cells, const BridgeLimits& limits, const OwnBox& begun) {
   return Decks(cells, limits).find(begun);

@@ -23,12 +23,11 @@ constexpr int deck_directions = 16;
 constexpr double deck_grade = 0.15, deck_roughness = 0.2;  // rise / run; m: from cell to cell of a deck
 constexpr double across = 0.06, uneven = 0.3;              // rise / run and m: across a deck, from any of its cells; banks fall by more
 constexpr double fall_beside = 1.0;                        // m beside a deck
-constexpr double sheer = 0.75;     // rise / run from anywhere in a cell to anywhere in the next: banks fall less steeply
-constexpr double wide_open = 5.0;  // m without returns beside a deck, and at least
-constexpr int open_cells = 5;      // so many cells
-constexpr double hidden = 12.0;    // m beside a deck that are looked at; too few for voids where cells are 3 m
-constexpr double banks = 40.0;     // m from the void beside a deck to returns on both sides of it
-constexpr double parting = 1.5;    // m by which the sides of water part per metre, at most
+constexpr double sheer = 0.75;                    // rise / run from anywhere in a cell to anywhere in the next: banks fall less steeply
+constexpr double wide_open = 5.0, hidden = 12.0;  // m without returns beside a deck, at least; looked at, too few for voids of 3 m cells
+constexpr int open_cells = 5;                     // at least so many cells of it
+constexpr double banks = 40.0;                    // m from the void beside a deck to returns on both sides of it
+constexpr double parting = 1.5, on = 20.0;  // m by which the sides of water part per metre, at most; m on, where it still has both or ends
 constexpr double widest = 30.0, narrowest = 2.0;
 constexpr double shortest_deck = 3.0, bank_length = 5.0;  // m: of deck; of ground beyond its ends
 constexpr double finest = 1.5;             // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
@@ -36,12 +35,10 @@ constexpr double gap = 3.0, stairs = 2.0;  // m without ground on it: a vehicle;
 constexpr int edge_cells = 3;              // before a void, of the surface
 constexpr float edge_fall = 0.2f;          // m down from there: a bank
 constexpr int bare = 2;                    // cells without return between a deck and what is below
-constexpr double wedge = 1.2, oblique = 1.15;             // of the least width of the deck; of all axes
-constexpr int growth = 5, fewest_beside = 2, around = 6;  // cells; of 8 cells around one, of a deck
-constexpr double share_open = 0.7;                        // of its length that must show both sides
-constexpr float near_deck = 0.5f, near_rail = 1.3f;       // m above or below: kerbs; above at the edges: railings and parapets
-constexpr double rail_reach = 1.0;                        // m from the deck's cells: these stand over what is beside them
-constexpr double void_at_end = 2.0;                       // m without returns beside the end of a deck: banks come near there
+constexpr double wedge = 1.2, oblique = 1.15, share_open = 0.7;  // of the least width of the deck; of all axes; of its length, open
+constexpr int growth = 5, fewest_beside = 2, around = 6;         // cells; of 8 cells around one, of a deck
+constexpr float near_deck = 0.5f, near_rail = 1.3f;              // m above or below: kerbs; above at the edges: railings and parapets
+constexpr double rail_reach = 1.0, void_at_end = 2.0;  // m from the deck's cells, over what is beside them; m of void beside its end
 
 constexpr double closed = std::numeric_limits<double>::infinity();
 
@@ -184,7 +181,7 @@ class Cells {
     return 0;
   }
   /// Is a void that begins at `first` cells in the direction and goes on to the `last` between two banks? Beyond the rim of the data are no
-  /// returns, or beyond a corner of it the sides part.
+  /// returns, beyond a corner of it the sides part, and a notch in it has no banks further on.
   bool is_between_banks(int i, int j, int direction, int first, int last) const {
     const auto apart = [&](int k) {
       const CellIndex at = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
@@ -193,7 +190,9 @@ class Cells {
       return right > 0 && left > 0 ? right + left : 0;
     };
     const int there = apart(last);
-    if (there == 0) return false;
+    const CellIndex end = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(last)];
+    const int ahead = to_returns(i + end.i, j + end.j, direction), far = std::min(last + in_cells(on), reach_);
+    if (there == 0 || ((ahead == 0 || ahead > in_cells(on)) && apart(far) == 0)) return false;
     for (int k = first; 2 * k <= first + last; ++k)  // railings may stand in the first
       if (there <= apart(k) + parting * (last - k)) return true;
     return false;
@@ -373,7 +372,8 @@ bool is_rail(const Cells& cells, const std::vector<std::uint8_t>& deck, const co
 
 double ground_decks_halo(double longest) {
   return Districts::halo() +
-         std::max(std::hypot(longest + bank_length + banks, widest + hidden), std::hypot(longest + bank_length, widest + hidden + banks)) +
+         std::max(std::hypot(longest + bank_length + banks, widest + hidden + on),
+                  std::hypot(longest + bank_length, widest + hidden + banks)) +
          (growth + 3 + deck_heights_reach) * sample_sides.back();
 }
 

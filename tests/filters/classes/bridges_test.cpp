@@ -50,6 +50,23 @@ TEST(Bridges, ADeckFromBankToBankIsOneAndARoofInTheValleyIsNot) {
   for (const std::uint8_t d : decks_of(house, {})) EXPECT_FALSE(d);
 }
 
+TEST(Bridges, APlaneAtTheEdgeOfTheDataBesideAValleyIsNone) {
+  const auto plane = [](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; };
+  StructureCells c = valley(plane, slopes);
+  const auto without_returns = [&c](const std::function<bool(int, int)>& beyond) {
+    for (int j = 0; j < 60; ++j)
+      for (int i = 0; i < 80; ++i)
+        if (beyond(i, j)) c.ground[c.lattice.at(i, j)] = c.low[c.lattice.at(i, j)] = empty;
+  };
+  // Black water on one side, between its banks: a bridge.
+  without_returns([](int i, int j) { return j > 33 && std::abs(i - 40) < 15; });
+  const std::vector<std::uint8_t> found = decks_of(c, {});
+  for (size_t at = 0; at < found.size(); ++at) EXPECT_EQ(found[at], c.has_plane(at)) << at % 80 << " " << at / 80;
+  // The rim of the swath: the banks have no returns either.
+  without_returns([](int, int j) { return j > 33; });
+  for (const std::uint8_t d : decks_of(c, {})) EXPECT_FALSE(d);
+}
+
 TEST(Bridges, CropsThatBeamsPassThroughAreNone) {
   StructureCells c = valley([](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 5 ? 0.0f : empty; },
                             [](int i, int) { return std::abs(i - 40) < 15 ? -1.2f : 0.0f; });

@@ -117,6 +117,14 @@ TEST(GroundDecks, LandBetweenAScarpAndACornerOfTheDataIsNone) {
   EXPECT_EQ(count(decks(returns(corner))), 0u);
 }
 
+TEST(GroundDecks, LandBetweenAScarpAndANotchInTheRimOfTheDataIsNone) {
+  const Scene notch = [](double x, double y) -> std::optional<Return> {
+    if (y < 50.0 - std::abs(x - 60.0) / 0.6 || y < 36.0) return std::nullopt;  // opens by 62 degrees, and ends after 14 m
+    return y > 58.0 ? Return{std::max(-8.0, 3.0 * (58.0 - y))} : Return{0.0};
+  };
+  EXPECT_EQ(count(decks(returns(notch))), 0u);
+}
+
 TEST(GroundDecks, ABridgeOfThinReturns) {
   const auto [share, others] = found_of(returns(bridge(14.0, std::nullopt), 1.2), 14.0);
   EXPECT_GE(share, 0.4);
