@@ -72,9 +72,27 @@ std::string foreign_unit(const std::vector<CheckMark>& marks, const std::vector<
   return {};
 }
 
+/// What to look for where all lines lie `common` m above the check points.
+std::string advice_on(double common, double undulation) {
+  constexpr double like_geoid = 2.5, least = 5.0;  // m: of other geoids beside EGM96; below it other causes are as likely
+  if (!(std::abs(undulation) > least) || std::abs(std::abs(common) - std::abs(undulation)) > like_geoid)
+    return "compare geoid, height system and antenna heights";
+  char out[400];
+  const bool are_ellipsoidal = common * undulation < 0.0;  // heights above the geoid are less by the undulation
+  std::snprintf(
+      out, sizeof out,
+      "the geoid lies %.1f m %s the ellipsoid there. The check points' heights are probably %s, the survey's %s: state crs of this "
+      "[[control]] with %s",
+      std::abs(undulation), undulation > 0.0 ? "above" : "below", are_ellipsoidal ? "ellipsoidal" : "above the geoid",
+      are_ellipsoidal ? "above the geoid" : "ellipsoidal",
+      are_ellipsoidal ? "ellipsoidal heights (\"EPSG:25832+ellipsoidal\")" : "its vertical part (\"EPSG:25832+7837\")");
+  return out;
+}
+
 }  // namespace
 
-MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings) {
+MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings,
+                       const std::function<double()>& undulation) {
   MarkFaults out;
   if (readings.empty()) return out;
   std::map<int, Group> lines;
@@ -115,10 +133,9 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
         sigmas.push_back(l.sigma);
       }
     out.common = core::middle(offsets);
-    out.named.push_back(
-        {"check.heights", text("%s lies %.3f m %s the check points on all of its %zu lines (sigma %.3f m): compare geoid, height "
-                               "system and antenna heights",
-                               "the ground", out.common, core::median(sigmas), judged)});
+    out.named.push_back({"check.heights", text("%s lies %.3f m %s the check points on all of its %zu lines (sigma %.3f m): ", "the ground",
+                                               out.common, core::median(sigmas), judged) +
+                                              advice_on(out.common, undulation ? undulation() : std::nan(""))});
   }
   std::map<int, bool> is_shifted;
   for (const LineAtMarks& l : out.lines) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct MarkFaults {
 /// Heights of marks in feet beside metres, or the other way round, are named alone: nothing else can be judged with them.
 /// Differences are taken apart: what all lines share, what a line has at all its marks, what a mark shows to all its lines. Named is what
 /// lies beyond four sigmas: of the marks, the points, the scatter around the mark and that of the differences themselves.
-MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings);
+/// `undulation`: of the geoid above the ellipsoid there, m, NaN where not known; asked where all lines share a difference.
+MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings,
+                       const std::function<double()>& undulation = {});
 
 }  // namespace swath::quality

@@ -70,7 +70,7 @@ std::optional<GeometryCheck> check_control(const ControlFigures& c, double ratio
                            words(" the control (median of %.0f points, predicted %.2f m)", static_cast<double>(c.compared), c.predicted)};
 }
 
-std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation, double range) {
+std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation, double range, bool control_over_geoid) {
   if (c.compared < fewest_control_points) return std::nullopt;
   const double size = std::abs(c.median);
   const bool known = std::isfinite(undulation), one = c.spread < one_height + 0.01 * size;
@@ -89,6 +89,12 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
   if (!one || (known ? !is_known : size < lowest_geoid || size > highest_geoid)) return std::nullopt;
   // Heights above the geoid are less than those above the ellipsoid by the undulation.
   const bool of_trajectory = c.median * undulation < 0;
+  if (known && of_trajectory && control_over_geoid)
+    return HeightMistake{
+        "height_geoid",
+        "with the control's heights above the ellipsoid in place of the geoid" + words(" (the geoid lies at %.0f m there)", undulation),
+        "state crs of [[control]] with +ellipsoidal; where its heights are above the geoid, export the trajectory with "
+        "ellipsoidal heights"};
   const std::string whose = !known          ? "heights of trajectory or control"
                             : of_trajectory ? "the trajectory's heights"
                                             : "the control's heights";

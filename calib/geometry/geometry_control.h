@@ -34,6 +34,7 @@ std::optional<GeometryCheck> check_control(const ControlFigures& figures, double
 struct HeightMistake {
   std::string name, what, cure;
 };
-std::optional<HeightMistake> height_mistake(const ControlFigures& figures, double undulation, double range);
+std::optional<HeightMistake> height_mistake(const ControlFigures& figures, double undulation, double range,
+                                            bool control_over_geoid = false);
 
 }  // namespace swath::calib

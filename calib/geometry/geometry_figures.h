@@ -54,6 +54,7 @@ struct GeometryInput {
   double convergence = 0.0;                           ///< rad, as usual_mistakes()
   Eigen::Vector3d antenna = Eigen::Vector3d::Zero();  ///< m, its lever arm, as usual_mistakes()
   std::vector<SurveyedPlace> control;
+  bool control_over_geoid = false;     ///< its heights are stated to count from a geoid or level
   std::function<double()> undulation;  ///< of the geoid above the ellipsoid, m; NaN, or empty: not known
 };
 

@@ -309,7 +309,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   const std::vector<UsualMistake> usual = usual_mistakes(in.chain, in.convergence, in.antenna);
   const bool of_heights = !apart && !unmet && is_of_heights(out);
   if (of_heights)
-    if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan(""), in.range))
+    if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan(""), in.range, in.control_over_geoid))
       out.named.push_back({h->name, h->what, h->cure, {}, 0});
   if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, usual, cells, out);
   if (sound && out.named.empty() && out.verdict != Verdict::consistent && out.covered < nearly_all) try_leap(in, o, flight, usual, out);

@@ -124,6 +124,21 @@ TEST(MarkFaults, AWrongGeoidIsNamedOnce) {
   }
 }
 
+TEST(MarkFaults, ADifferenceLikeTheGeoidsSaysWhoseHeightsAreWhich) {
+  const auto said = [](double common, double undulation) {
+    const Case c = drawn(3, [common](int, int) { return common; });
+    return find_faults(c.marks, c.readings, [undulation] { return undulation; }).named.at(0).sentence;
+  };
+  const std::string ellipsoidal = "The check points' heights are probably ellipsoidal, the survey's above the geoid";
+  const std::string levelled = "The check points' heights are probably above the geoid, the survey's ellipsoidal";
+  EXPECT_NE(said(-46.8, 46.6).find(ellipsoidal), std::string::npos) << said(-46.8, 46.6);
+  EXPECT_NE(said(31.0, -31.6).find(ellipsoidal), std::string::npos);
+  EXPECT_NE(said(46.8, 46.6).find(levelled), std::string::npos);
+  EXPECT_NE(said(-31.0, -31.6).find(levelled), std::string::npos);
+  for (const auto& [common, undulation] : {std::pair(-46.8, 40.0), {-46.8, std::nan("")}, {0.9, 0.8}, {0.5, 46.6}})
+    EXPECT_NE(said(common, undulation).find("compare geoid, height system and antenna heights"), std::string::npos) << common;
+}
+
 TEST(MarkFaults, AllThreeAtOnce) {
   for (unsigned seed = 1; seed <= 20; ++seed)
     EXPECT_EQ(codes(drawn(seed, [](int m, int l) { return 2.0 + (m == 5 ? 0.4 : 0.0) + (l == 2 ? -0.5 : 0.0); })),

@@ -8,6 +8,7 @@
 #include "core/config/result.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
+#include "core/geo/undulation.h"
 #include "core/statistics.h"
 #include "io/vector/control.h"
 #include "stages/adapters/adapters.h"
@@ -48,17 +49,12 @@ double convergence_of(const Context& context, const core::TrajectoryData& d) {
   return -std::atan2(way.x(), way.y());
 }
 
-/// Of the geoid above the ellipsoid at the trajectory's middle, m; NaN where PROJ has no grid of one.
-double undulation_of(const core::TrajectoryData& d) {
-  const size_t i = d.size() / 2;
-  const Eigen::Vector3d place(core::to_degrees(d.longitude[i]), core::to_degrees(d.latitude[i]), d.height[i]);
-  try {
-    return place.z() - core::Transform(core::wgs84_geodetic(), core::Crs("EPSG:4326+5773"))(place).z();
-  } catch (const core::SystemError&) {
-    throw;
-  } catch (const core::Error&) {
-    return std::nan("");
-  }
+/// Do the heights of control count from a geoid or level, by its CRS or the survey's?
+bool is_over_geoid(const io::Survey& survey) {
+  return std::any_of(survey.control.begin(), survey.control.end(), [&](const io::ControlFile& f) {
+    const std::string& stated = f.crs.empty() ? survey.crs : f.crs;
+    return !stated.empty() && core::Crs(stated).heights() == core::Heights::vertical;
+  });
 }
 
 /// Points on the ground. The smooth cell beside a roof's centre may lie on the ground below.
@@ -104,7 +100,11 @@ GeometryFindings judge_flight(const Context& context, const trajectory::Trajecto
   // What is computed from GNSS fixes here is the IMU's, or the antenna's by its lever arm.
   for (size_t k = 0; k < 3 && fixes == nullptr; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
   in.control = control_of(context.survey, trajectory.data(), tally);
-  in.undulation = [&trajectory] { return undulation_of(trajectory.data()); };
+  in.control_over_geoid = is_over_geoid(context.survey);
+  in.undulation = [&d = trajectory.data()] {
+    const size_t middle = d.size() / 2;
+    return core::undulation({core::to_degrees(d.longitude[middle]), core::to_degrees(d.latitude[middle])});
+  };
   calib::GeometryFigures found;
   try {
     found = calib::judge_geometry(in, o);

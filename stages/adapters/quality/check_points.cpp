@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/config/units.h"
+#include "core/geo/undulation.h"
 #include "core/statistics.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
@@ -113,6 +114,12 @@ Marks marks_of(const Context& context) {
     out.targets.back().corners.push_back(at);
   }
   return out;
+}
+
+/// Of the geoid at the first mark, m.
+double undulation_at(const Context& context, const Marks& marks) {
+  const auto place = core::place_on_earth(context.crs, marks.list.front().at.head<2>() / context.unit);
+  return place ? core::undulation(*place) : std::nan("");
 }
 
 std::vector<fs::path> check_files(const io::Survey& survey) {
@@ -353,7 +360,7 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   if (o.open == CheckPointOptions().open) name_covers(marks, o.open, found);  // a list of one's own says what is open
   judge_planimetry(marks, std::move(rows), flown != nullptr, found);
   judge_accuracy(marks, at, o, found);
-  quality::MarkFaults faults = quality::find_faults(marks.list, readings);
+  quality::MarkFaults faults = quality::find_faults(marks.list, readings, [&] { return undulation_at(context, marks); });
   found.lines = std::move(faults.lines);
   found.named.insert(found.named.end(), faults.named.begin(), faults.named.end());
   write_marks(context, o.name, marks.list, at, readings);

@@ -53,6 +53,17 @@ TEST(GeometryControl, AKnownGeoidSaysWhoseHeights) {
   for (const TriedMistake& t : judged_with(-30, 47.3).named) EXPECT_NE(t.name, "height_geoid");
 }
 
+TEST(GeometryControl, EllipsoidalHeightsOfControlOverAGeoidAreNotTheTrajectorys) {
+  ControlFigures c;
+  c.compared = 12, c.spread = 0.05, c.control = 600.0, c.ground = 553.4, c.median = -46.6;
+  const auto stated = height_mistake(c, 46.6, 600.0, true), other = height_mistake(c, 46.6, 600.0, false);
+  ASSERT_TRUE(stated && other);
+  EXPECT_EQ(stated->name, "height_geoid");
+  EXPECT_NE(stated->what.find("the control's heights above the ellipsoid"), std::string::npos) << stated->what;
+  EXPECT_NE(stated->cure.find("[[control]] with +ellipsoidal"), std::string::npos) << stated->cure;
+  EXPECT_NE(other->what.find("the trajectory's heights"), std::string::npos) << other->what;
+}
+
 TEST(GeometryControl, HeightsInFeetAreNamed) {
   GeometryFigures g;
   GateFlight f = flight();
