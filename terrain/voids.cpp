@@ -43,10 +43,12 @@ std::vector<std::uint32_t> count_points(const core::Block& block, const std::vec
 
 void give_void_reasons(core::Grid& grid, const core::Block& block, const std::vector<std::uint32_t>& rows, double reach) {
   const core::Lattice& l = grid.lattice;
-  const bool any_void = std::any_of(grid.height.begin(), grid.height.end(), [](float h) { return std::isnan(h); });
+  if (std::none_of(grid.height.begin(), grid.height.end(), [](float h) { return std::isnan(h); })) {
+    std::fill(grid.reason.begin(), grid.reason.end(), core::Void::none);
+    return;
+  }
   const int h = static_cast<int>(std::floor(reach / l.cell));
-  core::Lattice wide{l.cell, l.i0 - h, l.j0 - h, l.nx + 2 * h, l.ny + 2 * h};
-  if (!any_void) wide = {l.cell, l.i0, l.j0, 0, 0};
+  const core::Lattice wide{l.cell, l.i0 - h, l.j0 - h, l.nx + 2 * h, l.ny + 2 * h};
   const SummedArea occupied(wide, count_points(block, rows, wide));
   for (int j = 0; j < l.ny; ++j)
     for (int i = 0; i < l.nx; ++i) {
