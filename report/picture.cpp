@@ -13,11 +13,12 @@ namespace swath::report {
 namespace {
 
 constexpr core::Rgb level_grey{180, 180, 180};
-constexpr int enlarged_side = 1000;    // a small grid is enlarged to about this many pixels
-constexpr double legend_step = 0.1;    // of the legend's heights
-constexpr double darkest = 0.15;       // brightness of a cell without any light, level ground being 1
-constexpr double contrast = 1.4;       // exponent of the brightness: flat country needs more than Lambert's law gives
-constexpr double densest = 1.0 / 3.0;  // share of the map that ordinary contours may cover
+constexpr int enlarged_side = 1000;                    // a small grid is enlarged to about this many pixels
+constexpr double legend_step = 0.1;                    // of the legend's heights
+constexpr double darkest = 0.15;                       // brightness of a cell without any light, level ground being 1
+constexpr double contrast = 1.4;                       // exponent of the brightness: flat country needs more than Lambert's law gives
+constexpr double densest = 1.0 / 3.0;                  // share of the map that ordinary contours may cover
+constexpr double ordinary_gap = 3.0, index_gap = 4.0;  // pixels from line to line at least, lines of 1 and 2 pixels
 
 /// 2nd and 98th percentile of the heights: single peaks and pits do not take the colours from the rest.
 Span height_span(const core::Grid& g) {
@@ -48,6 +49,22 @@ struct Ground {
   core::Grid grid;
   int size;
   std::vector<std::array<float, 3>> colours;
+
+  /// Rise per pixel over some cells around a place on the map, in pixels; 0 where it is not known.
+  double rise(double x, double y) const {
+    const core::Lattice& l = grid.lattice;
+    const int i = static_cast<int>(std::floor(x / size)), j = l.ny - 1 - static_cast<int>(std::floor(y / size));
+    const int reach = std::max(1, 4 / size);
+    const auto along = [&](int di, int dj) {
+      const int west = std::max(i - di, 0), east = std::min(i + di, l.nx - 1), south = std::max(j - dj, 0),
+                north = std::min(j + dj, l.ny - 1);
+      const int cells = east - west + north - south;
+      if (cells <= 0) return 0.0;
+      const double d = static_cast<double>(grid.height[l.at(east, north)]) - static_cast<double>(grid.height[l.at(west, south)]);
+      return std::isnan(d) ? 0.0 : d / (cells * size);
+    };
+    return l.holds(i, j) ? std::hypot(along(reach, 0), along(0, reach)) : 0.0;
+  }
 
   core::Rgb at(int x, int y) const {
     const core::Lattice& l = grid.lattice;
@@ -94,6 +111,41 @@ double interval_of(const std::vector<PixelLine>& lines, bool index_only) {
     if (d > 1e-6 && (step == 0.0 || d < step)) step = d;
   }
   return step;
+}
+
+/// Of the heights that are drawn where lines come near: the interval of those that hold this one; 0 where it is the only one.
+double step_of(const PixelLine& line, double interval, double index_interval) {
+  if (!line.index) return interval;
+  for (const double several : {20.0, 10.0, 4.0, 2.0}) {
+    if (index_interval <= 0.0) break;
+    const double times = line.height / (several * index_interval);
+    if (std::abs(times - std::round(times)) < 1e-6) return several * index_interval;
+  }
+  return index_interval;
+}
+
+/// Without the parts on ground so steep that lines of their step would touch: there index contours alone are left, or every second ...
+std::vector<PixelLine> apart_on_slopes(const std::vector<PixelLine>& lines, const Ground& ground, const Box& map) {
+  const double interval = interval_of(lines, false), index_interval = interval_of(lines, true);
+  std::vector<PixelLine> out;
+  for (const PixelLine& line : lines) {
+    const double step = step_of(line, interval, index_interval), gap = line.index ? index_gap : ordinary_gap;
+    PixelLine part{{}, {}, line.height, line.index};
+    const auto end = [&] {
+      if (part.x.size() > 1) out.push_back(part);
+      part.x.clear(), part.y.clear();
+    };
+    for (size_t k = 0; k < line.x.size(); ++k) {
+      const double back = k > 0 ? 0.5 : 0.0;  // the middle of the stretch from the vertex before
+      const size_t before = k > 0 ? k - 1 : 0;
+      const double x = line.x[k] + back * (line.x[before] - line.x[k]), y = line.y[k] + back * (line.y[before] - line.y[k]);
+      if (step > 0.0 && ground.rise(x - map.x, y - map.y) * gap > step) end();
+      part.x.push_back(line.x[k]);
+      part.y.push_back(line.y[k]);
+    }
+    end();
+  }
+  return out;
 }
 
 /// What of the lines is drawn, and their intervals.
@@ -195,7 +247,8 @@ Drawing relief_map(const core::Grid& grid, const std::vector<core::ContourLine>&
   layout->view.west = view.west;
   layout->view.north = view.north;
   return {layout->width, layout->height,
-          [ground, layout, shown, labels = o.labels, lines = to_pixels(contours, layout->view)](Canvas& canvas) {
+          [ground, layout, shown, labels = o.labels,
+           lines = apart_on_slopes(to_pixels(contours, layout->view), *ground, layout->view.map)](Canvas& canvas) {
             const Box& map = layout->view.map;
             canvas.pixels(map, [&](int x, int y) { return ground->at(x, y); });
             canvas.clip(map);

@@ -34,7 +34,8 @@ void describe(PictureOptions& o, V& v) {
 /// A map of a surface, north up: hillshade, tinted by height (2nd to 98th percentile), contours over it (index contours thicker and with
 /// their heights), voids hatched (water blue), title, scale bar, north arrow and legend. A grid larger than max_side is averaged by
 /// whole blocks (a block with fewer than half of its heights is void); a small one is enlarged. Where ordinary contours would cover more
-/// than a third of the map only index contours are drawn, and the legend says so.
+/// than a third of the map only index contours are drawn, and the legend says so. Where the ground is so steep that lines come within 2
+/// pixels of one another, index contours alone are drawn, or of these every 2nd, 4th, 10th or 20th.
 /// `contours` in the coordinates of the grid. An empty grid gives an empty drawing.
 Drawing relief_map(const core::Grid& grid, const std::vector<core::ContourLine>& contours = {}, const PictureOptions& options = {});
 

@@ -155,6 +155,38 @@ TEST(Picture, ATangleOfContoursIsThinnedToIndexContours) {
   EXPECT_EQ(rows, 0);
 }
 
+TEST(Picture, ContoursOnASteepSlopeKeepApart) {
+  // A slope of 2 from 100 m to 500 m, then flat, a pixel per metre: contours of 5 m would lie 2.5 pixels apart, those of 10 m 5.
+  core::Grid g({1.0, 0, 0, 400, 60});
+  const auto height = [](double x) { return 100.0 + 2.0 * std::min(x, 200.0); };
+  for (int j = 0; j < 60; ++j)
+    for (int i = 0; i < 400; ++i) {
+      g.height[g.lattice.at(i, j)] = static_cast<float>(height(i + 0.5));
+      g.reason[g.lattice.at(i, j)] = core::Void::none;
+    }
+  PictureOptions o;
+  o.labels = false;
+  o.max_side = 400;
+  std::vector<core::ContourLine> lines;
+  for (int z = 101; z < 500; ++z) {
+    core::ContourLine line;
+    line.height = z, line.index = z % 5 == 0;
+    const double x = (z - 100.0) / 2.0;
+    line.x = {x, x}, line.y = {0.0, 60.0};
+    lines.push_back(line);
+  }
+  const core::Picture all = relief_picture(g, lines, o), bare = relief_picture(g, {}, o);
+  std::erase_if(lines, [](const core::ContourLine& line) { return static_cast<int>(line.height) % 10 != 0; });
+  const core::Picture tenths = relief_picture(g, lines, o);
+  int drawn = 0;
+  for (int x = 0; x < all.width; ++x) {
+    EXPECT_EQ(brightness(all, x, 44), brightness(tenths, x, 44)) << x;
+    drawn += brightness(all, x, 44) != brightness(bare, x, 44);
+  }
+  EXPECT_GE(drawn, 38);  // 39 lines of 10 m, 2 pixels each
+  EXPECT_LE(drawn, 120);
+}
+
 TEST(Picture, EachKindOfVoidLooksDifferent) {
   core::Grid g = two_levels(100, 80);
   const auto hole = [&](int from, core::Void reason) {
