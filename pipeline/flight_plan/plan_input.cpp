@@ -8,6 +8,7 @@
 #include "core/config/option_visitors.h"
 #include "core/error.h"
 #include "core/geo/map_axes.h"
+#include "core/geo/map_scale.h"
 #include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -47,6 +48,14 @@ planning::PlanOptions options_of(const PlanRequest& request, core::Value& simula
   return options;
 }
 
+/// The UTM zone of the first corner; of an area that is a file any.
+std::string utm_for(const planning::PlanOptions& o, const core::Crs& crs) {
+  std::optional<core::Place> place;
+  if (!o.corners.empty() && crs.is_projected())
+    place = core::place_on_earth(crs, Vector2d(o.corners[0].east.value, o.corners[0].north.value) / crs.metres_per_unit());
+  return place ? core::utm_zone(*place, crs) : "EPSG:25832";
+}
+
 core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
   core::Crs crs;
   const auto take = [&crs](const std::string& definition) {
@@ -59,7 +68,8 @@ core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
   core::require_easting_northing(crs, config.string());
   if (!crs.is_projected() || crs.metres_per_unit() != 1.0)
     throw core::usage_error("a plan needs a projected CRS in metres, " + crs.name() + " is none", config.string(),
-                            "state another: crs = \"EPSG:25832\"");
+                            "state a UTM zone: crs = \"" + utm_for(o, crs) +
+                                "\". A file of the area is transformed; corners and a terrain model (gdalwarp -t_srs) must be in it");
   return crs;
 }
 

@@ -10,6 +10,7 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/map_axes.h"
+#include "core/geo/map_scale.h"
 #include "simulate/random.h"
 
 namespace swath::simulate {
@@ -40,8 +41,9 @@ int terms_of(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6
 
 MapPatch::MapPatch(const core::Crs& crs, const core::Geodetic& origin, double half, double low, double high) {
   if (!crs.is_projected() || std::abs(crs.metres_per_unit() - 1.0) > 1e-12 || std::abs(crs.vertical_metres_per_unit() - 1.0) > 1e-12)
-    throw core::usage_error("a survey is simulated in a projected CRS in metres, which " + crs.name() + " is not", "crs",
-                            "EPSG:32632 (UTM zone 32 N) and the like");
+    throw core::usage_error(
+        "a survey is simulated in a projected CRS in metres, which " + crs.name() + " is not", "crs",
+        "the UTM zone there: crs = \"" + core::utm_zone({core::to_degrees(origin.longitude), core::to_degrees(origin.latitude)}) + "\"");
   core::require_easting_northing(crs, "crs");
   const core::Transform map_T_ecef(core::wgs84_ecef(), crs);
   origin_ecef_ = core::ecef_of(origin);

@@ -50,6 +50,8 @@ TEST(PlanInput, WhatDoesNotFitIsRefused) {
   EXPECT_NE(refusal(request_of(folder, plan_toml("ground = \"500 m\""))).find("CRS is not known"), std::string::npos);
   EXPECT_NE(refusal(request_of(folder, plan_toml("ground = \"500 m\"\ndem = \"hills.tif\""))).find("both"), std::string::npos);
   EXPECT_NE(refusal(request_of(folder, plan_toml("crs = \"EPSG:4326\"\nground = \"500 m\""))).find("metres"), std::string::npos);
+  // Oregon north in feet: the corners lie in UTM zone 10 or so, by whatever numbers they have.
+  EXPECT_NE(refusal(request_of(folder, plan_toml("crs = \"EPSG:2269\"\nground = \"500 m\""))).find("crs = \"EPSG:326"), std::string::npos);
   EXPECT_NE(refusal(request_of(folder, plan_toml("crs = \"EPSG:2048\"\nground = \"500 m\""))).find("EPSG:32734"), std::string::npos);
   EXPECT_NE(refusal(request_of(folder, plan_toml("crs = \"EPSG:32632\"\ndem = \"other.tif\""))).find("warp"), std::string::npos);
   EXPECT_NE(refusal(request_of(folder, plan_toml("crs = \"EPSG:32632\"\ndem = \"none.tif\""))).find("none.tif"), std::string::npos);
