@@ -77,15 +77,14 @@ std::string advice_on(double common, double undulation) {
   constexpr double like_geoid = 2.5, least = 5.0;  // m: of other geoids beside EGM96; below it other causes are as likely
   if (!(std::abs(undulation) > least) || std::abs(std::abs(common) - std::abs(undulation)) > like_geoid)
     return "compare geoid, height system and antenna heights";
-  char out[400];
-  const bool are_ellipsoidal = common * undulation < 0.0;  // heights above the geoid are less by the undulation
+  char out[500];
+  const bool is_by_undulation = common * undulation < 0.0;  // heights above the geoid are less by the undulation
   std::snprintf(
-      out, sizeof out,
-      "the geoid lies %.1f m %s the ellipsoid there. The check points' heights are probably %s, the survey's %s: state crs of this "
-      "[[control]] with %s",
-      std::abs(undulation), undulation > 0.0 ? "above" : "below", are_ellipsoidal ? "ellipsoidal" : "above the geoid",
-      are_ellipsoidal ? "above the geoid" : "ellipsoidal",
-      are_ellipsoidal ? "ellipsoidal heights (\"EPSG:25832+ellipsoidal\")" : "its vertical part (\"EPSG:25832+7837\")");
+      out, sizeof out, "the geoid lies %.1f m %s the ellipsoid there: %s", std::abs(undulation), undulation > 0.0 ? "above" : "below",
+      is_by_undulation ? "either the check points' heights are ellipsoidal (state crs of their [[control]] with +ellipsoidal), or those of "
+                         "the trajectory or cloud are above the geoid (export or state them so)"
+                       : "either the check points' heights are above the geoid (state crs of their [[control]] with its vertical part), or "
+                         "those of the cloud are ellipsoidal (state crs of its [[points]] with +ellipsoidal)");
   return out;
 }
 

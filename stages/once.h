@@ -198,6 +198,15 @@ struct Returned<Corrected<R, F>> {
   }
 };
 
+/// For OnceExtras::memory: a function of records and options, whose parameters are found as the stage's own.
+template <auto function, class O>
+double memory_by(const Context& context, const O& options) {
+  const struct {
+    const Context& context;
+  } site{context};
+  return Signature<decltype(function)>::call(function, site, options);
+}
+
 /// What a function does not say of itself; each may be left out.
 template <class O>
 struct OnceExtras {

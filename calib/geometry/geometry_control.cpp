@@ -90,11 +90,11 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
   // Heights above the geoid are less than those above the ellipsoid by the undulation.
   const bool of_trajectory = c.median * undulation < 0;
   if (known && of_trajectory && control_over_geoid)
-    return HeightMistake{
-        "height_geoid",
-        "with the control's heights above the ellipsoid in place of the geoid" + words(" (the geoid lies at %.0f m there)", undulation),
-        "state crs of [[control]] with +ellipsoidal; where its heights are above the geoid, export the trajectory with "
-        "ellipsoidal heights"};
+    return HeightMistake{"height_geoid",
+                         "with the control's heights ellipsoidal, or the trajectory's above the geoid" +
+                             words(" (the geoid lies at %.0f m there)", undulation),
+                         "where the control's heights are ellipsoidal, state its crs with +ellipsoidal; otherwise export the trajectory "
+                         "with ellipsoidal heights"};
   const std::string whose = !known          ? "heights of trajectory or control"
                             : of_trajectory ? "the trajectory's heights"
                                             : "the control's heights";

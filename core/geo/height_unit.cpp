@@ -9,6 +9,7 @@
 namespace swath::core {
 namespace {
 
+constexpr std::string_view other_units = "units of ";
 constexpr double international_foot = 0.3048, survey_foot = 1200.0 / 3937.0;
 
 std::string digits_of(double metres) {
@@ -30,7 +31,7 @@ std::string height_unit_name(double metres) {
 std::string unit_symbol(double metres) {
   if (is_same_unit(metres, 1.0)) return "m";
   if (is_same_unit(metres, international_foot)) return "ft";
-  return is_same_unit(metres, survey_foot) ? "ftUS" : "units of " + digits_of(metres) + " m";
+  return is_same_unit(metres, survey_foot) ? "ftUS" : std::string(other_units) + digits_of(metres) + " m";
 }
 
 std::optional<double> metres_of_unit_name(std::string_view name) {
@@ -39,6 +40,9 @@ std::optional<double> metres_of_unit_name(std::string_view name) {
   };
   if (is_one_of({"m", "metre", "meter"})) return 1.0;
   if (is_one_of({"ft", "foot"})) return international_foot;
+  if (double metres = 0.0;
+      name.starts_with(other_units) && std::sscanf(std::string(name).c_str(), "units of %lf m", &metres) == 1 && metres > 0.0)
+    return metres;
   if (is_one_of({"US survey foot", "ftUS", "us-ft", "US-ft", "ft_us"})) return survey_foot;
   return std::nullopt;
 }

@@ -23,6 +23,11 @@ std::string direction_of(PJ_CONTEXT* c, const PJ* crs, int axis) {
   return proj_text(direction);
 }
 
+std::string heights_part(const Crs& crs) {
+  if (crs.heights() == Heights::ellipsoidal) return "+ellipsoidal";
+  return crs.vertical_epsg() != 0 ? "+" + std::to_string(crs.vertical_epsg()) : "";
+}
+
 /// "EPSG:32734", UTM in the middle of the area of use, or what the choice is.
 std::string utm_for(const Crs& crs) {
   double west = 0, south = 0, east = 0, north = 0;
@@ -30,12 +35,7 @@ std::string utm_for(const Crs& crs) {
   if (!crs.area_of_use(west, south, east, north) &&
       (crs.epsg() == 0 || !Crs("EPSG:" + std::to_string(crs.epsg())).area_of_use(west, south, east, north)))
     return "EPSG:326xx (north) or EPSG:327xx (south)";
-  return utm_zone({0.5 * (west + (east < west ? east + 360.0 : east)), 0.5 * (south + north)}, crs);
-}
-
-std::string heights_part(const Crs& crs) {
-  if (crs.heights() == Heights::ellipsoidal) return "+ellipsoidal";
-  return crs.vertical_epsg() != 0 ? "+" + std::to_string(crs.vertical_epsg()) : "";
+  return utm_zone({0.5 * (west + (east < west ? east + 360.0 : east)), 0.5 * (south + north)}, crs) + heights_part(crs);
 }
 
 }  // namespace
@@ -69,8 +69,8 @@ void require_easting_northing(const Crs& crs, const std::string& where) {
   if (turned.empty()) return;
   const std::string form = easting_northing_form(crs);
   throw usage_error("the map's axes are " + turned + " in " + crs.name() + ": a map with easting and northing is needed", where,
-                    form.empty() ? "state such a CRS (crs or --crs), for example the UTM zone " + utm_for(crs) + heights_part(crs)
-                                 : "state " + form + " (crs or --crs), the same projection with easting and northing");
+                    form.empty() ? "use such a CRS, for example the UTM zone " + utm_for(crs) + "; transform coordinates that exist"
+                                 : "use " + form + ", the same projection with easting and northing; transform coordinates that exist");
 }
 
 }  // namespace swath::core

@@ -27,7 +27,8 @@ constexpr double lowest_antenna = -480.0;   // m, ellipsoidal: the shore of the 
 constexpr double fastest = 500.0;           // m/s
 constexpr double near_one_another = 100.0;  // m: errors of single positions
 constexpr double gap_steps = 1.5;
-constexpr double largest_sigma = 1e5;     // m or m/s: more says that it is not known
+constexpr const char* wide_sigmas = "GNSS fixes with a sigma over 100 km, left out";
+constexpr double unknown_sigma = 1e5;     // m or m/s: more says that it is not known
 constexpr double least_variance = 1e-10;  // m^2 or (m/s)^2; less is a zero that went through rotations
 
 /// Horizontal sigma that a solution of this kind has at least, m; its height has twice that.
@@ -118,8 +119,8 @@ void FixList::leave_out_not_finite() {
     }
     const auto [fault, hint] = impossibility(f);
     if (fault.empty()) {
-      const bool unknown = largest_sigma_of(f.covariance) > largest_sigma;
-      if (unknown) tally_.count("GNSS fixes with a sigma over 100 km, left out", place(r));
+      const bool unknown = largest_sigma_of(f.covariance) > unknown_sigma;
+      if (unknown) tally_.count(wide_sigmas, place(r));
       return unknown;
     }
     ++far;
@@ -189,7 +190,7 @@ void FixList::take(const Read& read) {
                                 : Matrix3d(R * variances.asDiagonal() * R.transpose()));
   const double v = file_.sigma_velocity.value;
   const Vector3d velocity_variances = Vector3d::Constant(v * v);
-  const bool known = !(largest_sigma_of(f.velocity_covariance) > largest_sigma);
+  const bool known = !f.velocity.allFinite() || !(largest_sigma_of(f.velocity_covariance) > unknown_sigma);
   if (!known) tally_.count("GNSS velocities with a sigma over 100 km/s, left out", place(read));
   const bool moves = known && f.velocity.allFinite();
   velocities_ = velocities_ || moves;
@@ -215,6 +216,8 @@ core::GnssData FixList::finish() {
   refuse(back_, most_back, "go back in time", "the file holds several sessions: part them, or sort it");
   tally_.read("GNSS fixes", added_);
   tally_.keep("GNSS fixes", out_.size());
+  if (out_.size() == 0 && tally_.of(wide_sigmas) > 0)
+    throw core::Error("every fix has a sigma over 100 km", name_, "check the sigmas' columns and their units");
   if (out_.size() == 0) throw core::Error("the file has no position", name_, "check its format and columns");
   if (!velocities_) {
     out_.velocity.clear();

@@ -34,7 +34,11 @@ void describe(const PlannedFlightFacts& r, V& v) {
   v.result("area_m2", number("area_m2"), core::plain(0), "Area to be flown.");
   v.result("line_length_m", number("line_length_m"), core::metres(0), "Length of all lines.");
   v.result("time_s", number("time_s"), core::seconds(0), "Time on lines and turns.");
-  v.result("warnings", std::vector<std::string>{}, "What looks wrong.");
+  std::vector<std::string> warnings;
+  if (const Value* own = r.tree.find("warnings"); own && own->is_array())
+    for (const Value& one : own->items())
+      if (one.is_text()) warnings.push_back(one.as_text());
+  v.result("warnings", warnings, "What looks wrong.");
 }
 
 /// quality.xml of `report.quality`.

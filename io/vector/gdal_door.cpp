@@ -280,7 +280,8 @@ CrsFacts crs_facts(const std::string& text) {
   facts.ellipsoidal = crs.heights() == core::Heights::ellipsoidal;
   facts.name = crs.name();
   facts.unit = facts.geographic ? "degree" : core::unit_symbol(crs.metres_per_unit());
-  facts.vertical_unit = core::unit_symbol(crs.vertical_metres_per_unit());
+  const bool is_known = crs.has_height_unit() || facts.geographic || crs.metres_per_unit() == 1.0;
+  facts.vertical_unit = is_known ? core::unit_symbol(crs.vertical_metres_per_unit()) : "unknown unit";
   facts.vertical_name = crs.vertical_name();
   srs.StripVertical();
   srs.DemoteTo2D(nullptr);

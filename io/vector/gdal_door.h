@@ -86,7 +86,7 @@ struct CrsFacts {
   std::string axis_mapping = "1,2";                  ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
   std::string name;                                  ///< of the whole CRS
   std::string unit = "unknown";                      ///< of the horizontal axes: "m", "ft", "ftUS", "degree", ...
-  std::string vertical_unit = "m";                   ///< of heights; the metre where the CRS does not say
+  std::string vertical_unit = "m";                   ///< of heights; "unknown unit" where a CRS in feet does not say
   std::string vertical_name{core::unknown_heights};  ///< name of the vertical datum, "ellipsoidal height", or that none is stated
 };
 

@@ -105,7 +105,7 @@ void describe(const RunReport& r, V& v) {
   v.result("control_unused", r.control_unused, core::plain().only_if(!r.control_unused.empty()),
            "Files of [[control]] that no stage of the run uses, with what they are for.");
   v.result("over_memory", r.over_memory, core::plain().only_if(!r.over_memory.empty()),
-           "Stages that took more than the default of run.memory, with about how much.");
+           "Stages estimated to need more than the default of run.memory leaves, with how much.");
   v.result("pieces_resumed", r.pieces_resumed, "Pieces of work that an earlier run had done.");
   v.result("pieces_damaged", r.pieces_damaged, "Pieces of an earlier run that were damaged and made again.");
   v.result("strips_read_again", r.strips_read_again, core::if_any(),

@@ -50,6 +50,17 @@ void prepare_map(RunState& run) {
   expect_map_fits(run);
 }
 
+/// The default budget is meant for tiles: where a survey stage needs more, the report says so. Any other is enforced.
+void expect_memory(RunState& run, size_t number) {
+  const std::string name(run.stage(number).info().name);
+  const double bytes = run.stage(number).survey_memory(run.context), left = run.memory.left();
+  if (bytes <= left) return;
+  if (run.memory.bytes() != RunOptions().memory.value) run.memory.require(bytes, left, name, true);
+  const auto text = [](double b) { return core::format_quantity(core::Dimension::memory, std::ceil(b / 1e8) * 1e8); };
+  run.over_memory.push_back(name + " needs about " + text(bytes) + ", and " + text(std::max(0.0, left)) +
+                            " of run.memory = " + text(run.memory.bytes()) + " are free");
+}
+
 /// What readers hand on is as large as their files, and read as fast from these.
 bool is_read_again(const RunState& run, size_t number) { return run.stage(number).info().name.starts_with("readers."); }
 
@@ -99,17 +110,6 @@ void prepare(RunState& run) {
   for (size_t i = 0; i < run.plan.stages.size(); ++i)
     if (run.works_on(i, Grain::strip)) run.last_strip_stage = i;
   run.folders = run.fingerprints;
-}
-
-/// The default budget is meant for tiles: where a survey stage takes more, the report says so. Any other is kept.
-void expect_memory(RunState& run, size_t number) {
-  const std::string name(run.stage(number).info().name);
-  const double bytes = run.stage(number).survey_memory(run.context), left = run.memory.left();
-  if (bytes <= left) return;
-  if (run.memory.bytes() != RunOptions().memory.value) run.memory.require(bytes, left, name, true);
-  run.over_memory.push_back(name + " takes about " + core::format_quantity(core::Dimension::memory, std::ceil(bytes / 1e8) * 1e8) +
-                            " of memory, more than the default of run.memory, " +
-                            core::format_quantity(core::Dimension::memory, run.memory.bytes()));
 }
 
 void run_survey_stages(RunState& run) {

@@ -49,12 +49,12 @@ planning::PlanOptions options_of(const PlanRequest& request, core::Value& simula
   return options;
 }
 
-/// The UTM zone of the first corner; of an area that is a file any.
+/// The UTM zone of the first corner; of an area that is a file the form of its code.
 std::string utm_for(const planning::PlanOptions& o, const core::Crs& crs) {
   std::optional<core::Place> place;
   if (!o.corners.empty() && crs.is_projected())
     place = core::place_on_earth(crs, Vector2d(o.corners[0].east.value, o.corners[0].north.value) / crs.metres_per_unit());
-  return place ? core::utm_zone(*place, crs) : "EPSG:25832";
+  return place ? core::utm_zone(*place, crs) : "EPSG:326xx";
 }
 
 core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
@@ -68,7 +68,7 @@ core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
   if (crs.empty()) throw core::usage_error("the CRS is not known", config.string(), "state it: crs = \"EPSG:25832\"");
   core::require_easting_northing(crs, config.string());
   if (!crs.is_projected() || crs.metres_per_unit() != 1.0)
-    throw core::usage_error("a plan needs a projected CRS in metres, " + crs.name() + " is none", config.string(),
+    throw core::usage_error("a plan needs a projected CRS in metres, " + crs.name() + " is not one", config.string(),
                             "state a UTM zone: crs = \"" + utm_for(o, crs) +
                                 "\". A file of the area is transformed; corners and a terrain model (gdalwarp -t_srs) must be in it");
   return crs;

@@ -109,12 +109,17 @@ const core::Value& strips_of(const Outcome& o) {
 }
 
 TEST_F(Geometry, AFlightThatDoesNotFitAnyBudgetButTheDefaultIsRefused) {
-  std::vector<std::string> sets{"calib.strips.corrections.spacing=\"2 ms\"", "calib.strips.tolerance=\"10 m\""};
-  const Outcome o = run_with("", "", sets, adjusting());
-  ASSERT_NE(o.report.find("over_memory"), nullptr);
-  EXPECT_TRUE(o.report.find("over_memory")->items().at(0).as_text().starts_with("calib.strips takes about "));
-  sets.push_back("run.memory=\"1.9 GB\"");
-  EXPECT_THROW(run_with("", "", sets, adjusting()), core::SystemError);
+  const auto with = [](const std::string& when) {
+    return run_with("", "", {"calib.strips.corrections.spacing=\"2 ms\"", "calib.strips.tolerance=\"10 m\"", "run.memory=\"1.9 GB\"", when},
+                    adjusting());
+  };
+  EXPECT_EQ(with("calib.strips.when=needed").code, core::Exit::done) << "what is not adjusted takes nothing";
+  try {
+    with("calib.strips.when=always");
+    ADD_FAILURE() << "adjusted";
+  } catch (const core::SystemError& e) {
+    EXPECT_NE(std::string(e.what()).find("calib.strips needs "), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(Geometry, HeightsAreNotJudgedByRoofs) {

@@ -50,11 +50,13 @@ double convergence_of(const Context& context, const core::TrajectoryData& d) {
 }
 
 /// Do the heights of control count from a geoid or level, by its CRS or the survey's?
-bool is_over_geoid(const io::Survey& survey) {
+bool is_over_geoid(const io::Survey& survey) try {
   return std::any_of(survey.control.begin(), survey.control.end(), [&](const io::ControlFile& f) {
     const std::string& stated = f.crs.empty() ? survey.crs : f.crs;
     return !stated.empty() && core::Crs(stated).heights() == core::Heights::vertical;
   });
+} catch (const core::Error&) {  // counted where control is read
+  return false;
 }
 
 /// Points on the ground. The smooth cell beside a roof's centre may lie on the ground below.

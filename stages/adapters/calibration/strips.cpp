@@ -247,14 +247,17 @@ Corrections correct_strips(const Context& context, const trajectory::Trajectory&
   return std::move(stage.out);
 }
 
-double memory_of(const Context& c, const StripStageOptions& o) {
+double strips_memory(const Context& c, const StripStageOptions& o) {
   constexpr double bytes_per_unknown = 0.133e6;  // factor, inverse and observations (docs/performance.md, 20 and 50 lines)
-  constexpr double components = 6.0;
+  constexpr double components_of_a_spline = 3.0, fewest_chained = 1500.0;  // unknowns: fewer take little
+  const calib::CorrectionOptions& corrections = o.adjust.corrections;
+  const int splines = (corrections.position == calib::CorrectionForm::spline) + (corrections.attitude == calib::CorrectionForm::spline);
   double time = 0.0;
   for (const Strip& s : c.strips)
     if (s.last_time > s.first_time) time += s.last_time - s.first_time;
-  return bytes_per_unknown *
-         std::min(components * time / o.adjust.corrections.spacing.value, static_cast<double>(o.adjust.corrections.most));
+  const double unknowns =
+      std::min(components_of_a_spline * splines * time / corrections.spacing.value, static_cast<double>(corrections.most));
+  return o.when == AdjustWhen::always && unknowns > fewest_chained ? bytes_per_unknown * unknowns : 0.0;
 }
 
 }  // namespace
@@ -264,7 +267,7 @@ Entry strips_stage() {
       "calib.strips",
       "Strip adjustment: corrects the trajectory of a survey along its lines so that they meet on planes that several "
       "of them have seen, the calibration held; strips.json and report.html.",
-      {.inputs = files_in<&io::Survey::control>, .products = strip_products, .memory = memory_of});
+      {.inputs = files_in<&io::Survey::control>, .products = strip_products, .memory = strips_memory});
 }
 
 }  // namespace swath::stages

@@ -69,11 +69,6 @@ std::vector<std::string> ins_gnss_products(const InsGnssStageOptions& o) {
 
 void expect_imu_spec(const Context& context, const InsGnssStageOptions&) { require_imu_spec(context.survey, "trajectory.ins_gnss"); }
 
-double memory_of(const Context& c, const InsGnssStageOptions& o) {
-  const core::ImuData* imu = c.records.find<core::ImuData>();
-  return imu ? smoothing_memory(*imu, o) : 0.0;
-}
-
 Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
                                                                     const InsGnssStageOptions& o, const Output& to,
                                                                     const core::OnProgress& progress, core::Tally& tally) {
@@ -103,7 +98,7 @@ Entry ins_gnss_stage() {
       "trajectory.ins_gnss",
       "Smoothed trajectory from IMU and GNSS records: strapdown mechanisation, error-state Kalman filter, smoother; with "
       "its covariances, estimates of the sensors' errors and plots.",
-      {.check = expect_imu_spec, .inputs = true_trajectory, .products = ins_gnss_products, .memory = memory_of});
+      {.check = expect_imu_spec, .inputs = true_trajectory, .products = ins_gnss_products, .memory = memory_by<smoothing_memory>});
 }
 
 }  // namespace swath::stages

@@ -59,8 +59,8 @@ TEST(GeometryControl, EllipsoidalHeightsOfControlOverAGeoidAreNotTheTrajectorys)
   const auto stated = height_mistake(c, 46.6, 600.0, true), other = height_mistake(c, 46.6, 600.0, false);
   ASSERT_TRUE(stated && other);
   EXPECT_EQ(stated->name, "height_geoid");
-  EXPECT_NE(stated->what.find("the control's heights above the ellipsoid"), std::string::npos) << stated->what;
-  EXPECT_NE(stated->cure.find("[[control]] with +ellipsoidal"), std::string::npos) << stated->cure;
+  EXPECT_NE(stated->what.find("the control's heights ellipsoidal, or"), std::string::npos) << stated->what;
+  EXPECT_NE(stated->cure.find("state its crs with +ellipsoidal"), std::string::npos) << stated->cure;
   EXPECT_NE(other->what.find("the trajectory's heights"), std::string::npos) << other->what;
 }
 

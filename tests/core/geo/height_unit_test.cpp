@@ -33,7 +33,7 @@ TEST(HeightUnit, IsKnownByItsNamesInFiles) {
 }
 
 TEST(HeightUnit, HasASymbolThatIsReadAgain) {
-  for (const double metres : {1.0, 0.3048, 1200.0 / 3937.0}) EXPECT_EQ(metres_of_unit_name(unit_symbol(metres)), metres);
+  for (const double metres : {1.0, 0.3048, 1200.0 / 3937.0, 0.201168}) EXPECT_EQ(metres_of_unit_name(unit_symbol(metres)), metres);
   EXPECT_EQ(unit_symbol(0.201168), "units of 0.201168 m");
 }
 

@@ -54,12 +54,12 @@ std::string hint_of(const char* crs) {
 }
 
 TEST(MapAxes, RefusalNamesAMapToUse) {
-  EXPECT_EQ(hint_of("EPSG:5513"), "state EPSG:5514 (crs or --crs), the same projection with easting and northing");
-  EXPECT_EQ(hint_of("EPSG:2048"), "state such a CRS (crs or --crs), for example the UTM zone EPSG:32734");
+  EXPECT_EQ(hint_of("EPSG:5513"), "use EPSG:5514, the same projection with easting and northing; transform coordinates that exist");
+  EXPECT_EQ(hint_of("EPSG:2048"), "use such a CRS, for example the UTM zone EPSG:32734; transform coordinates that exist");
   EXPECT_EQ(hint_of(Crs("EPSG:2048").wkt1().c_str()), hint_of("EPSG:2048"));
-  EXPECT_EQ(hint_of("EPSG:3173"), "state such a CRS (crs or --crs), for example the UTM zone EPSG:32629");
+  EXPECT_EQ(hint_of("EPSG:3173"), "use such a CRS, for example the UTM zone EPSG:32629; transform coordinates that exist");
   EXPECT_EQ(hint_of("+proj=tmerc +lon_0=19 +axis=wsu +datum=WGS84"),
-            "state such a CRS (crs or --crs), for example the UTM zone EPSG:326xx (north) or EPSG:327xx (south)");
+            "use such a CRS, for example the UTM zone EPSG:326xx (north) or EPSG:327xx (south); transform coordinates that exist");
 }
 
 }  // namespace

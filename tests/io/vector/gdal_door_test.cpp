@@ -81,7 +81,7 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
 
   const CrsFacts feet = crs_facts("EPSG:2992");  // Oregon Lambert, international feet, without a vertical part
   EXPECT_EQ(feet.unit, "ft");
-  EXPECT_EQ(feet.vertical_unit, "m");                  // where nothing says otherwise
+  EXPECT_EQ(feet.vertical_unit, "unknown unit");
   const CrsFacts mixed = crs_facts("EPSG:2263+6360");  // New York Long Island (ftUS) + NAVD88 (ftUS)
   EXPECT_EQ(mixed.unit, "ftUS");
   EXPECT_EQ(mixed.vertical_unit, "ftUS");
