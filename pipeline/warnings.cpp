@@ -87,7 +87,8 @@ const std::vector<WarningKind>& warning_kinds() {
       {"points.outside_box", "Points lie well outside the box that their file's header states.",
        "The points are used as they are; have the file written again, for other programs trust the box."},
       {"run.memory", "A stage that holds a whole flight is estimated to need more memory than the default of run.memory leaves.",
-       "State what the run may take, such as run.memory = \"4 GB\": any value but the default is enforced, and what does not fit is refused."},
+       "State what the run may take, such as run.memory = \"4 GB\": any value but the default is enforced, and what does not fit is "
+       "refused."},
       {"trajectory.clocks", "The clocks of IMU and GNSS records differ by more than 2 ms and four sigmas.",
        "State the offset that the warning names in survey.toml: as it is, positions are off along the track by speed times offset."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",

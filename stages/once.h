@@ -201,9 +201,7 @@ struct Returned<Corrected<R, F>> {
 /// For OnceExtras::memory: a function of records and options, whose parameters are found as the stage's own.
 template <auto function, class O>
 double memory_by(const Context& context, const O& options) {
-  const struct {
-    const Context& context;
-  } site{context};
+  const struct { const Context& context; } site{context};
   return Signature<decltype(function)>::call(function, site, options);
 }
 
