@@ -6,17 +6,15 @@
 #include <cstdio>
 #include <initializer_list>
 
+#include "core/config/units.h"
+
 namespace swath::core {
 namespace {
 
 constexpr std::string_view other_units = "units of ";
 constexpr double international_foot = 0.3048, survey_foot = 1200.0 / 3937.0;
 
-std::string digits_of(double metres) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.15g", metres);
-  return text;
-}
+std::string digits_of(double metres) { return format_number(metres, 15); }
 
 }  // namespace
 

@@ -9,14 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/config/units.h"
 #include "core/geo/proj_handles.h"
 
 namespace swath::core {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// From -180 to less than 180.
 double wrapped(double degrees) {

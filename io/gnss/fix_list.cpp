@@ -27,7 +27,6 @@ constexpr double lowest_antenna = -480.0;   // m, ellipsoidal: the shore of the 
 constexpr double fastest = 500.0;           // m/s
 constexpr double near_one_another = 100.0;  // m: errors of single positions
 constexpr double gap_steps = 1.5;
-constexpr const char* wide_sigmas = "GNSS fixes with a sigma over 100 km, left out";
 constexpr double unknown_sigma = 1e5;     // m or m/s: more says that it is not known
 constexpr double least_variance = 1e-10;  // m^2 or (m/s)^2; less is a zero that went through rotations
 
@@ -120,8 +119,10 @@ void FixList::leave_out_not_finite() {
     const auto [fault, hint] = impossibility(f);
     if (fault.empty()) {
       const bool unknown = largest_sigma_of(f.covariance) > unknown_sigma;
-      if (unknown) tally_.count(wide_sigmas, place(r));
-      return unknown;
+      if (!unknown) return false;
+      ++without_sigma_;
+      tally_.count("GNSS fixes with a sigma over 100 km, left out", place(r));
+      return true;
     }
     ++far;
     tally_.count("GNSS fixes with an impossible position, left out", place(r) + ": " + fault);
@@ -190,9 +191,11 @@ void FixList::take(const Read& read) {
                                 : Matrix3d(R * variances.asDiagonal() * R.transpose()));
   const double v = file_.sigma_velocity.value;
   const Vector3d velocity_variances = Vector3d::Constant(v * v);
-  const bool known = !f.velocity.allFinite() || !(largest_sigma_of(f.velocity_covariance) > unknown_sigma);
-  if (!known) tally_.count("GNSS velocities with a sigma over 100 km/s, left out", place(read));
-  const bool moves = known && f.velocity.allFinite();
+  bool moves = f.velocity.allFinite();
+  if (moves && largest_sigma_of(f.velocity_covariance) > unknown_sigma) {
+    tally_.count("GNSS velocities with a sigma over 100 km/s, left out", place(read));
+    moves = false;
+  }
   velocities_ = velocities_ || moves;
   out_.velocity.push_back(moves ? f.velocity : Vector3d(Vector3d::Constant(Fix::none)));
   const bool own_velocity = moves && !f.velocity_covariance.array().isNaN().all();
@@ -216,7 +219,7 @@ core::GnssData FixList::finish() {
   refuse(back_, most_back, "go back in time", "the file holds several sessions: part them, or sort it");
   tally_.read("GNSS fixes", added_);
   tally_.keep("GNSS fixes", out_.size());
-  if (out_.size() == 0 && tally_.of(wide_sigmas) > 0)
+  if (out_.size() == 0 && without_sigma_ > 0)
     throw core::Error("every fix has a sigma over 100 km", name_, "check the sigmas' columns and their units");
   if (out_.size() == 0) throw core::Error("the file has no position", name_, "check its format and columns");
   if (!velocities_) {

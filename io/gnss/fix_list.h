@@ -79,7 +79,7 @@ class FixList {
   core::GnssData out_;
   bool velocities_ = false, own_sigmas_ = false, lent_sigmas_ = false;
   std::vector<Read> read_;
-  std::uint64_t added_ = 0, all_ = 0, not_finite_ = 0, repeated_ = 0, back_ = 0;
+  std::uint64_t added_ = 0, all_ = 0, not_finite_ = 0, without_sigma_ = 0, repeated_ = 0, back_ = 0;
 };
 
 }  // namespace swath::io

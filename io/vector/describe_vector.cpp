@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "io/survey/file_facts.h"
 #include "io/vector/gdal_door.h"
+#include "io/vector/height_statement.h"
 
 namespace swath::io {
 namespace {
@@ -88,10 +89,8 @@ LayerFacts facts_of(OGRLayer& layer, std::vector<std::string>& warnings) {
   find_crs(layer, out, warnings);
   if (const char* about = layer.GetMetadataItem("DESCRIPTION")) out.description = about;
   // The CRS of flat lines has no heights: the description of this program's layers states those of the field.
-  constexpr std::string_view heights = "; heights in ";
-  const size_t at = out.description.find(heights), comma = out.description.find(", ", at);
-  if (at != std::string::npos && comma != std::string::npos && out.crs.heights == core::unknown_heights)
-    out.crs.heights = out.description.substr(comma + 2);
+  if (const std::string_view heights = stated_heights(out.description); !heights.empty() && out.crs.heights == core::unknown_heights)
+    out.crs.heights = heights;
   for (int k = 0; k < layer.GetLayerDefn()->GetFieldCount(); ++k) out.fields.push_back(layer.GetLayerDefn()->GetFieldDefn(k)->GetNameRef());
   if (out.features == 0) warnings.push_back("layer " + out.name + " has no feature");
   if (empty > 0) warnings.push_back("layer " + out.name + " has " + core::counted(empty, "feature") + " without a geometry");

@@ -12,6 +12,7 @@
 #include "core/printable.h"
 #include "io/text/output_file.h"
 #include "io/vector/gdal_door.h"
+#include "io/vector/height_statement.h"
 #include "io/vector/vector_sink.h"
 
 namespace swath::io {
@@ -76,8 +77,7 @@ void add_layer(GDALDataset& set, const SpatialLayer& what, const CrsFacts& facts
   const bool compound = what.vertical && (facts.geographic || !facts.ellipsoidal);  // it has no projection with three axes
   if (!facts.empty) srs.SetFromUserInput(compound ? facts.wkt.c_str() : facts.horizontal_wkt.c_str());
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  const std::string description =
-      "DESCRIPTION=" + what.about + (what.flat ? "" : "; heights in " + facts.vertical_unit + ", " + facts.vertical_name);
+  const std::string description = "DESCRIPTION=" + what.about + (what.flat ? "" : heights_statement(facts));
   const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", what.about.empty() ? nullptr : description.c_str(),
                                  nullptr};
   OGRLayer* layer = set.CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, type_of(what), const_cast<char**>(options));

@@ -16,6 +16,8 @@
 namespace swath::io {
 namespace {
 
+constexpr std::string_view heights_in = "; heights in ";
+
 /// The unit named between `before` and `behind` in a text.
 std::optional<double> unit_between(std::string_view text, std::string_view before, char behind) {
   const size_t at = text.find(before);
@@ -46,6 +48,14 @@ std::string beginning_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::string heights_statement(const CrsFacts& crs) { return std::string(heights_in) + crs.vertical_unit + ", " + crs.vertical_name; }
+
+std::string_view stated_heights(std::string_view description) {
+  const size_t at = description.find(heights_in), comma = description.find(", ", at);
+  if (at == std::string_view::npos || comma == std::string_view::npos) return {};
+  return description.substr(comma + 2);
+}
+
 std::optional<double> stated_height_unit(const std::filesystem::path& file) {
   const GdalMessages messages;
   const Dataset set = open_vector(file);
@@ -53,7 +63,7 @@ std::optional<double> stated_height_unit(const std::filesystem::path& file) {
   for (OGRLayer* layer : set->GetLayers()) {
     if (const auto unit = unit_of_crs(layer->GetSpatialRef())) return unit;
     const char* about = layer->GetMetadataItem("DESCRIPTION");
-    if (const auto unit = unit_between(about ? about : "", "; heights in ", ',')) return unit;
+    if (const auto unit = unit_between(about ? about : "", heights_in, ',')) return unit;
   }
   const std::string driver = set->GetDriverName();
   if (driver == "DXF") return unit_between(beginning_of(file), ", elevations in ", ',');

@@ -4,8 +4,17 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 
 namespace swath::io {
+
+struct CrsFacts;
+
+/// What this program adds to the description of a layer with heights: "; heights in m, DHHN2016 height".
+std::string heights_statement(const CrsFacts& crs);
+/// What heights count from by a description that holds such a statement; empty where it does not.
+std::string_view stated_heights(std::string_view description);
 
 /// Metres of one unit of the file's heights, by the first that states it: the vertical part of a layer's CRS; as this program writes them,
 /// a layer's description in a GeoPackage, the comments at the start of a DXF, the member `swath` of a GeoJSON. Nothing where none does.

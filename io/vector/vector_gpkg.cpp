@@ -9,6 +9,7 @@
 
 #include "core/config/units.h"
 #include "core/error.h"
+#include "io/vector/height_statement.h"
 #include "io/vector/vector_sink.h"
 
 namespace swath::io {
@@ -102,7 +103,7 @@ class GpkgSink : public ContourSink {
     OGRSpatialReference srs;
     if (!crs.empty) srs.SetFromUserInput(crs.horizontal_wkt.c_str());
     srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    const std::string description = "DESCRIPTION=" + about + "; heights in " + crs.vertical_unit + ", " + crs.vertical_name;
+    const std::string description = "DESCRIPTION=" + about + heights_statement(crs);
     const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
     OGRLayer* layer = set_->CreateLayer(name, crs.empty ? nullptr : &srs, type, const_cast<char**>(options));
     if (!layer) scope.messages.fail_writing(file_);

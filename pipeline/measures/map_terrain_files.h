@@ -34,7 +34,7 @@ struct MapTerrainFound {
   std::size_t cells = 0, voids = 0;
   std::size_t flat_parts = 0, flat_parts_left = 0;
   std::vector<terrain::MapError> errors;
-  std::string unit, height_unit;  ///< of the lengths here, of the model's heights; empty without a CRS
+  std::string height_unit;  ///< of the model; empty without a CRS
 };
 template <class V>
 void describe(const MapTerrainFound& f, V& v) {
@@ -55,8 +55,8 @@ void describe(const MapTerrainFound& f, V& v) {
 
 /// FOLDER/dtm.tif, dtm_quality.tif (sigma, void reason), dtm_part.tif (1 between contours, 2 flat and filled, 3 flat and kept) and
 /// map_terrain.json. A line whose height changes is a breakline, any other a contour. Throws core::Error: files that cannot be read, a map
-/// in degrees, no height, a unit of heights that is
-/// not stated in a CRS in feet, contours that cross at different heights, a product that would take the place of a file that is read.
+/// in degrees, no height, a unit of heights that is not stated in a CRS in feet, contours that cross at different heights, a product that
+/// would take the place of a file that is read.
 MapTerrainFound write_map_terrain(const MapTerrainRequest& request);
 std::string map_terrain_text(const MapTerrainFound& found);
 

@@ -258,8 +258,7 @@ Given<trajectory::Trajectory, NetworkFindings> adjust_survey(core::ImuData imu, 
 
 double network_memory(const core::ImuData& imu, const NetworkStageOptions& o) {
   constexpr double bytes_per_instant = 0.125e6;  // factor, inverse and observations: 0.115e6 to 0.14e6, 4 to 50 lines
-  const double time = imu.size() > 1 ? imu.time.back() - imu.time.front() : 0.0, instants = time / o.smoother.node_spacing.value;
-  return smoothing_memory(imu, o.smoother) + bytes_per_instant * instants;
+  return smoothing_memory(imu, o.smoother) + bytes_per_instant * smoother_nodes(imu, o.smoother);
 }
 
 }  // namespace

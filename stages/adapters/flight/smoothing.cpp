@@ -22,10 +22,13 @@ trajectory::StatedClocks clocks_of(const io::Survey& survey) {
 
 }  // namespace
 
+double smoother_nodes(const core::ImuData& imu, const trajectory::InsGnssOptions& o) {
+  return imu.size() > 1 ? (imu.time.back() - imu.time.front()) / o.node_spacing.value : 0.0;
+}
+
 double smoothing_memory(const core::ImuData& imu, const trajectory::InsGnssOptions& o) {
   constexpr double bytes_per_record = 162.0, bytes_per_node = 11e3, nodes_at_once = 20000.0;
-  const double nodes = imu.size() > 1 ? (imu.time.back() - imu.time.front()) / o.node_spacing.value : 0.0;
-  return bytes_per_record * static_cast<double>(imu.size()) + bytes_per_node * std::min(nodes, nodes_at_once);
+  return bytes_per_record * static_cast<double>(imu.size()) + bytes_per_node * std::min(smoother_nodes(imu, o), nodes_at_once);
 }
 
 void require_imu_spec(const io::Survey& survey, const std::string& stage) {

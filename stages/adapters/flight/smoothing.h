@@ -16,6 +16,9 @@ namespace swath::stages {
 /// Throws a usage error where the survey does not say how good its IMU is; `stage`: who asks.
 void require_imu_spec(const io::Survey& survey, const std::string& stage);
 
+/// States that the smoother has over the records.
+double smoother_nodes(const core::ImuData& imu, const trajectory::InsGnssOptions& o);
+
 /// About the bytes that smooth_records() takes beside its records (docs/performance.md, measured for an hour and for four).
 double smoothing_memory(const core::ImuData& imu, const trajectory::InsGnssOptions& o);
 

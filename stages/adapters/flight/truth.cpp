@@ -111,7 +111,7 @@ fs::path truth_sums(const fs::path& folder, TileKey key) { return piece_file(fol
 
 void sum_errors(const TileJob& job, const Context& context) {
   quality::TruthSums sums;
-  if (context.survey.truth.returns && other_map(context).empty()) sums = compare_points(context, job.block, job.own);
+  if (context.survey.truth.returns) sums = compare_points(context, job.block, job.own);
   write_rows(truth_sums(job.folder, job.key), std::vector{sums});
 }
 TruthFindings find_errors(const MergeJob& job, const Context& context) {
