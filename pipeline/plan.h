@@ -70,6 +70,12 @@ struct Plan {
   std::vector<PlannedStage> stages;
   std::optional<core::Value> survey_tree{};  ///< as Request::survey_tree
   std::vector<std::string> runs_as{};        ///< a pipeline of PDAL: what each of its stages is here
+
+  /// Does the stage work on such pieces of this survey?
+  bool works_on(size_t number, stages::Grain g) const {
+    const stages::Stage& stage = *stages[number].stage;
+    return stage.works_on(g) && (g != stages::Grain::tile || stage.has_tile_work(survey));
+  }
 };
 
 /// Reads config and survey. Throws core::Error (exit code 2) with all faults. A plan without a survey can be checked and

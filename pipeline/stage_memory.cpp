@@ -51,13 +51,21 @@ StageMemory::StageMemory(const TileStore& store, const stages::Stage& stage, con
   given_bytes_ = bytes_of(stage.info().gives, 0.0);
 }
 
+/// Of the points around a tile, those that its bytes are for, where `share` of all would be if they were spread evenly: at the edge of a
+/// survey most of them are the tile's own, which all count.
+double StageMemory::points_counted(const Points& points, double side, double share) const {
+  const double reach = side + 2.0 * std::min(stage_.near_halo(), stage_.halo()), own_share = side * side / (reach * reach);
+  if (share >= 1.0 || own_share >= 1.0) return points.near;
+  return points.own + (points.near - points.own) * std::max(0.0, (share - own_share) / (1.0 - own_share));
+}
+
 /// Bytes of what is worked on at once: the points of `box` with those around it.
 double StageMemory::needed(const Points& points, const stages::Box& box) const {
   const double side = 0.5 * (box.x1 - box.x0 + box.y1 - box.y0);  // the square of the same perimeter is not smaller
   square_.tile_side = side;
   const double chunk = 2.0 * static_cast<double>(chunk_rows) * row_bytes_;  // read, packed and unpacked
   const stages::TileMemory own = stage_.memory(square_);
-  double bytes = chunk + row_bytes_ * points.rows + own.bytes_per_point * (points.near * own.share_of_points), first = 0.0;
+  double bytes = chunk + row_bytes_ * points.rows + own.bytes_per_point * points_counted(points, side, own.share_of_points), first = 0.0;
   for (stages::Raster r : own.rasters) {
     if (!std::isfinite(r.rim)) {
       bytes += r.total(points.all);

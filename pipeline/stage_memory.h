@@ -47,6 +47,7 @@ class StageMemory {
     double rows, near, own, all;
   };
   double needed(const Points& points, const stages::Box& box) const;
+  double points_counted(const Points& points, double side, double share) const;
 
   const TileStore& store_;
   const stages::Stage& stage_;

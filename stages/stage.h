@@ -238,6 +238,8 @@ class Stage {
   /// grids needs them with the same cells.
   virtual double cell() const { return 0.0; }
   virtual void run_tile(const Context&, TileJob&) const {}
+  /// False where the survey has nothing that the work on tiles is for: no point is kept or read for it, and the merge runs without tiles.
+  virtual bool has_tile_work(const io::Survey&) const { return true; }
   /// Does a tile's work take its points from TileJob::stream, some at a time?
   virtual bool is_streamed() const { return false; }
   /// Can a tile that does not fit into memory be worked on in parts, each with its own halo and folder, with the same result?

@@ -141,6 +141,7 @@ struct TileExtras {
   TileMemory (*memory)(const O&, const Context&) = nullptr;     ///< as Stage::memory
   std::string_view (*implied)(const O&, bool cloud) = nullptr;  ///< as Stage::implied
   void (*check)(const Context&, const O&) = nullptr;
+  bool (*has_tile_work)(const io::Survey&) = nullptr;  ///< as Stage::has_tile_work
   std::vector<std::filesystem::path> (*inputs)(const io::Survey&) = nullptr;
   std::vector<std::filesystem::path> (*files)(const io::Survey&, const O&) = nullptr;  ///< inputs that options name, beside those
   std::vector<std::string> (*products)(const O&) = nullptr;
@@ -212,6 +213,7 @@ class WorkStage : public OptionStage<typename F::Options, typename F::Counts, ty
   std::vector<std::string> products() const override {
     return extras_.products ? extras_.products(this->options) : std::vector<std::string>{};
   }
+  bool has_tile_work(const io::Survey& s) const override { return !extras_.has_tile_work || extras_.has_tile_work(s); }
   bool is_streamed() const override { return extras_.is_streamed; }
   double cell() const override {
     if constexpr (requires { this->options.cell.value; })

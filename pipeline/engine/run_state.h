@@ -57,7 +57,7 @@ struct RunState {
   bool shares(WaveKind kind, size_t number) const;
   /// Which pieces of such work are this process's: all, where it does the run alone.
   std::vector<bool> own_pieces(const std::vector<double>& work) const;
-  bool works_on(size_t number, stages::Grain g) const { return stage(number).works_on(g); }
+  bool works_on(size_t number, stages::Grain g) const { return plan.works_on(number, g); }
   /// The stage's own folder of work.
   std::filesystem::path folder(size_t number) const;
 };

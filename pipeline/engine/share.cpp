@@ -25,7 +25,7 @@ std::vector<Wave> waves_of(const Plan& plan) {
     for (size_t i = 0; i < plan.stages.size(); ++i)
       if (plan.stages[i].stage->works_on(Grain::strip)) last_strip_stage = i;
     for (size_t i = last_strip_stage + 1; i < plan.stages.size(); ++i)
-      if (plan.stages[i].stage->works_on(Grain::tile)) waves.push_back({WaveKind::tiles, i});
+      if (plan.works_on(i, Grain::tile)) waves.push_back({WaveKind::tiles, i});
   }
   waves.push_back({WaveKind::finish, 0});
   return waves;

@@ -68,6 +68,27 @@ TEST(StageMemory, RastersAroundThePointsReachNoFartherThanThey) {
   EXPECT_LT(static_cast<double>(whole.bytes), 52.0 * across * across);
 }
 
+/// A tile without neighbours has all points inside the border that the model's triangles come from.
+TEST(StageMemory, AtTheEdgeOfASurveyEveryPointOfTheTileCounts) {
+  const test::TemporaryFolder folder;
+  core::Block b;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> inside(0.0, side);
+  for (int i = 0; i < 90000; ++i) b.x.push_back(inside(random)), b.y.push_back(inside(random)), b.z.push_back(0.0);
+  core::add_columns(b, {core::Column::classification, core::Column::flags});
+  StripWriter writer(folder / "strips/strip_1", side, 1 << 20);
+  writer.write(b);
+  writer.commit("");
+  TileStore store(folder / "strips", side, {0, 0, 0});
+  store.open({"strip_1"});
+  const io::Survey survey;
+  stages::Context context{survey};
+  context.tile_side = side;
+  const auto stage = stages::make_stage("terrain.dtm");
+  const StageMemory memory(store, *stage, context);
+  EXPECT_GE(static_cast<double>(memory.of({{0, 0}}).bytes), stage->memory(context).bytes_per_point * 90000.0);
+}
+
 TEST(StageMemory, AStageThatDoesNotDivideTilesIsNotCut) {
   const Dense d;
   const io::Survey survey;

@@ -7,6 +7,7 @@
 
 #include "stages/adapters/quality/mark_accuracy.h"
 #include "stages/adapters/quality/mark_files.h"
+#include "stages/adapters/quality/seen_cells.h"
 #include "tests/stages/tile_work.h"
 
 namespace swath::stages {
@@ -109,6 +110,80 @@ TEST(CheckPointAccuracy, OptionsOfAMapThatWouldDoNothingAreRefused) {
   EXPECT_NE(fault("planimetry = \"20 cm\"\n").find("scale"), std::string::npos);
   EXPECT_NE(fault("interval = \"1 m\"\nplanimetry = \"20 cm\"\n").find("planimetry is judged by a scale"), std::string::npos);
   EXPECT_NE(fault("interval = \"1 m\"\nc_factor = 1200\n").find("flying_height"), std::string::npos);
+}
+
+/// Two lines over a slope of 10 %, one of them 6 cm higher; check points every 11 m, most within reach of several parts.
+struct CheckedTile {
+  static constexpr double side = 100.0, east = 600000.0, north = 5300000.0, spacing = 0.7;
+  Work w;
+  std::unique_ptr<Stage> stage = stage_with("quality.points", "radius = \"3 m\"");
+  core::Block all;
+  CheckedTile() {
+    std::string table = "name,x,y,z\n";
+    for (double x = 5.0; x < side; x += 11.0)
+      for (double y = 6.0; y < side; y += 11.0) {
+        char row[90];
+        std::snprintf(row, sizeof row, "m%.0f_%.0f,%.3f,%.3f,%.3f\n", x, y, east + x, north + y, 400.0 + 0.1 * x + 0.01 * std::sin(y));
+        table += row;
+      }
+    test::write_bytes(w.folder / "marks.csv", table);
+    w.survey.folder = w.folder.path();
+    w.survey.crs = "EPSG:32632";
+    io::ControlFile marks;
+    marks.file = "marks.csv";
+    marks.use = io::ControlUse::check;
+    w.survey.control.push_back(marks);
+    w.context.crs = core::Crs("EPSG:32632");
+    w.context.tile_side = side;
+    all.origin = {east, north, 400.0};
+    for (double x = 0.2; x < side; x += spacing)
+      for (double y = 0.1; y < side; y += spacing) {
+        const bool second = std::fmod(x + y, 3.0) < 1.2;
+        all.x.push_back(x), all.y.push_back(y), all.z.push_back(0.1 * x + (second ? 0.06 : 0.0));
+        all.strip.push_back(second ? 2 : 1);
+      }
+    core::add_columns(all, {core::Column::classification, core::Column::flags});
+    std::fill(all.classification.begin(), all.classification.end(), std::uint8_t{2});
+  }
+  std::string merged(const fs::path& folder) {
+    MergeJob job{folder, {{6000, 53000}}, {}};
+    stage->run_merge(w.context, job);
+    return test::read_bytes(w.context.output / "check_points.csv");
+  }
+};
+
+TEST(CheckPointFiles, ATileInPartsGivesWhatTheWholeTileDoes) {
+  CheckedTile t;
+  const Box tile{CheckedTile::east, CheckedTile::north, CheckedTile::east + CheckedTile::side, CheckedTile::north + CheckedTile::side};
+  t.w.run_in(*t.stage, t.all, {6000, 53000}, tile, t.w.folder / "whole");
+  const std::string whole = t.merged(t.w.folder / "whole");
+  EXPECT_GT(std::count(whole.begin(), whole.end(), '\n'), 80);
+  EXPECT_NE(whole.find(" 2:"), std::string::npos) << "no check point is compared with two lines";
+  std::vector<fs::path> parts;
+  for (int k = 0; k < 4; ++k) {
+    const double x = tile.x0 + 50.0 * (k % 2), y = tile.y0 + 50.0 * (k / 2);
+    parts.push_back(t.w.folder / ("part_" + std::to_string(k)));
+    t.w.run_in(*t.stage, t.all, {6000, 53000}, {x, y, x + 50.0, y + 50.0}, parts.back());
+  }
+  ASSERT_TRUE(t.stage->is_divisible());
+  t.stage->join_parts(t.w.context, {{6000, 53000}, tile, t.w.folder / "joined", {}, 0, {}}, parts);
+  EXPECT_EQ(t.merged(t.w.folder / "joined"), whole);
+}
+
+TEST(SeenCells, HoldTheTilesOwnPointsAndTheDistanceIsFromTheirEdges) {
+  core::Block b;
+  b.origin = {1000.0, 2000.0, 0.0};
+  b.x = {1.0, 3.0, 80.0, 500.0}, b.y = {1.0, 24.0, -1.0, 500.0}, b.z = {0.0, 0.0, 0.0, 0.0};
+  core::add_columns(b, {core::Column::classification, core::Column::flags});
+  const std::vector<SeenCell> seen = seen_cells(b, 3);  // the fourth is of the halo
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_EQ(seen[0], (SeenCell{40, 80}));
+  EXPECT_EQ(seen[1], (SeenCell{43, 79}));
+  EXPECT_EQ(away(seen, {1010.0, 2020.0, 7.0}), 0.0);
+  EXPECT_NEAR(away(seen, {1000.0 - 3.0, 2025.0 + 4.0, 7.0}), 5.0, 1e-9);
+  EXPECT_TRUE(std::isinf(away({}, {0.0, 0.0, 0.0})));
+  b.classification = {7, 7, 7, 7};
+  EXPECT_TRUE(seen_cells(b, 3).empty());
 }
 
 TEST(CheckPointFiles, NamesAndCoversAreOneFieldEach) {

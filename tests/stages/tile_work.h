@@ -59,7 +59,11 @@ struct Work {
   }
   /// Runs the stage on tile (ix, iy) with the points of `all` that it asks for; what it has counted.
   core::Tally run(const Stage& stage, const core::Block& all, int ix, int iy, const fs::path& where) const {
-    TileJob job{{ix, iy}, context.box_of({ix, iy}), where, {}, 0, {}};
+    return run_in(stage, all, {ix, iy}, context.box_of({ix, iy}), where);
+  }
+  /// The same on a part of the tile.
+  core::Tally run_in(const Stage& stage, const core::Block& all, TileKey key, const Box& part, const fs::path& where) const {
+    TileJob job{key, part, where, {}, 0, {}};
     fs::create_directories(where);
     std::vector<std::uint32_t> own, around;
     const Box grown = job.box.grown(stage.halo());

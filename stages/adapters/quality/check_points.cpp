@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "core/config/units.h"
 #include "core/geo/undulation.h"
@@ -19,6 +20,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/scanner.h"
 #include "stages/adapters/quality/mark_files.h"
+#include "stages/adapters/quality/seen_cells.h"
 #include "stages/adapters/units.h"
 #include "stages/tile.h"
 
@@ -29,7 +31,6 @@ namespace fs = std::filesystem;
 using core::Column;
 
 constexpr size_t names_shown = 6;
-constexpr double seen_side = 25.0;                        // m: cells that hold points
 constexpr double outside_from = 100.0;                    // m: a check point farther from all of these cells lies outside
 constexpr const char* points_file = "check_points.json";  // for report.quality
 
@@ -129,9 +130,11 @@ std::vector<fs::path> check_files(const io::Survey& survey) {
   return out;
 }
 
+bool has_marks(const io::Survey& survey) { return !check_files(survey).empty(); }
+
 /// A check point file that cannot be used is found before the work begins.
 void require_marks(const Context& context, const CheckPointOptions&) {
-  if (check_files(context.survey).empty()) return;
+  if (!has_marks(context.survey)) return;
   io::Survey survey = context.survey;
   if (survey.crs.empty() && context.source) survey.crs = context.source->own_crs(survey);
   if (survey.crs.empty()) return;
@@ -157,51 +160,29 @@ RoofRows roof_rows(const TileJob& job, const Context& context, const trajectory:
   return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::pulse_returns_in(job.block, job.own, reaches)};
 }
 
-/// A square of the absolute lattice that holds points; plain data.
-struct SeenCell {
-  std::int32_t i = 0, j = 0;
-  auto operator<=>(const SeenCell&) const = default;
-};
-
-std::vector<SeenCell> seen_cells(const TileJob& job) {
-  std::vector<SeenCell> out;
-  for (size_t p = 0; p < job.own; ++p) {
-    if (!core::is_usable(job.block, p)) continue;
-    const SeenCell cell{static_cast<std::int32_t>(core::cell_index(job.block.origin.x() + job.block.x[p], seen_side)),
-                        static_cast<std::int32_t>(core::cell_index(job.block.origin.y() + job.block.y[p], seen_side))};
-    if (out.empty() || out.back() != cell) out.push_back(cell);
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-/// Distance of a place from the nearest cell with points, m: up to the cell's diagonal less than from the points.
-double away(const std::vector<SeenCell>& seen, const Eigen::Vector3d& at) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const SeenCell& c : seen) {
-    const double x0 = c.i * seen_side, y0 = c.j * seen_side;
-    const double dx = std::max({x0 - at.x(), 0.0, at.x() - x0 - seen_side}), dy = std::max({y0 - at.y(), 0.0, at.y() - y0 - seen_side});
-    nearest = std::min(nearest, dx * dx + dy * dy);
-  }
-  return std::sqrt(nearest);
-}
-
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, const trajectory::Trajectory* flown,
                RunCache& cache) {
   std::vector<quality::MarkReading> readings;
   RoofRows roofs;
   std::vector<SeenCell> seen;
-  if (!check_files(context.survey).empty() && !context.crs.empty()) {
+  if (!context.crs.empty()) {
     const Marks& marks = cache.get([&] { return marks_of(context); });
     std::vector<size_t> here;
     for (size_t m = 0; m < marks.list.size(); ++m)
       if (job.box.holds(marks.list[m].at.x(), marks.list[m].at.y())) here.push_back(m);
     readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
     roofs = roof_rows(job, context, flown, marks.targets, cache);
-    seen = seen_cells(job);
+    seen = seen_cells(job.block, job.own);
   }
   write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.pulses, seen);
+}
+
+void join_readings(const Context&, const TileJob& whole, const std::vector<fs::path>& parts) {
+  std::vector<quality::MarkReading> readings;
+  RoofRows roofs;
+  std::vector<SeenCell> seen;
+  for (const fs::path& part : parts) read_rows(readings_file(part, whole.key), readings, roofs.returns, roofs.pulses, seen);
+  write_rows(readings_file(whole.folder, whole.key), readings, roofs.returns, roofs.pulses, seen);
 }
 
 /// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
@@ -314,6 +295,10 @@ void name_covers(const Marks& marks, const std::vector<std::string>& open, Check
 
 void judge_planimetry(const Marks& marks, RoofRows rows, bool has_trajectory, CheckPointFindings& found) {
   if (marks.targets.empty()) return;
+  // The order is that of the tiles and of their parts.
+  std::sort(rows.returns.begin(), rows.returns.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.target, a.line, a.time, a.number, a.x, a.y) < std::tie(b.target, b.line, b.time, b.number, b.x, b.y);
+  });
   std::vector<double> run_sigmas;
   if (!has_trajectory) run_sigmas = quality::find_runs(rows.returns, quality::spans_of(std::move(rows.pulses)), marks.targets);
   if (rows.returns.empty() && !has_trajectory) {
@@ -341,7 +326,7 @@ void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const 
 CheckPointFindings judge_points(const MergeJob& job, const Context& context, const CheckPointOptions& o,
                                 const trajectory::Trajectory* flown, RunCache& cache) {
   CheckPointFindings found;
-  if (check_files(context.survey).empty()) {
+  if (!has_marks(context.survey)) {
     found.none = "none: the survey has no [[control]] of three coordinates with use = \"check\"";
     return found;
   }
@@ -379,10 +364,13 @@ Entry check_points_stage() {
       {.columns = {.needs = {Column::classification, Column::flags, Column::strip},
                    .reads = {Column::sigma_v, Column::sigma_h, Column::time, Column::return_number, Column::return_count}},
        .check = require_marks,
+       .has_tile_work = has_marks,
        .inputs = check_files,
-       .products = [](const CheckPointOptions& o) {
-         return std::vector<std::string>{o.name + ".csv", o.name + ".gpkg", points_file};
-       }});
+       .products =
+           [](const CheckPointOptions& o) {
+             return std::vector<std::string>{o.name + ".csv", o.name + ".gpkg", points_file};
+           },
+       .join_parts = join_readings});
 }
 
 }  // namespace swath::stages

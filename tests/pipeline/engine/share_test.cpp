@@ -118,6 +118,20 @@ class SharedRun : public testing::Test {
 };
 std::unique_ptr<test::TemporaryFolder> SharedRun::folder_;
 
+TEST_F(SharedRun, HasNoWaveOfAStageThatTheSurveyHasNothingFor) {
+  Plan plan = make_plan(request(*folder_ / "waves"));
+  const auto has_check_points = [&] {
+    const std::vector<Wave> waves = waves_of(plan);
+    return std::any_of(waves.begin(), waves.end(), [&](const Wave& w) { return name_of(plan, w) == "quality.points"; });
+  };
+  EXPECT_FALSE(has_check_points());
+  io::ControlFile marks;
+  marks.file = "marks.csv";
+  marks.use = io::ControlUse::check;
+  plan.survey.control.push_back(marks);
+  EXPECT_TRUE(has_check_points());
+}
+
 TEST_F(SharedRun, HasTheProductsOfOneProcessWhateverTheOrderAndHoweverOften) {
   const test::TemporaryFolder out;
   {
