@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -95,13 +96,13 @@ class TreeBuilder {
 
   bool Null() { return put({}); }
   bool Bool(bool b) { return put(b); }
-  bool Int(int i) { return put(static_cast<std::int64_t>(i)); }
-  bool Uint(unsigned i) { return put(static_cast<std::int64_t>(i)); }
-  bool Int64(std::int64_t i) { return put(i); }
-  // The reader calls every positive integer above 32 bits so.
-  bool Uint64(std::uint64_t i) { return std::in_range<std::int64_t>(i) ? put(static_cast<std::int64_t>(i)) : put(static_cast<double>(i)); }
-  bool Double(double d) { return put(d); }
-  bool RawNumber(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }
+  // Numbers come as they stand: RapidJSON's own conversion is undefined for a zero with a large exponent.
+  bool Int(int) { return false; }
+  bool Uint(unsigned) { return false; }
+  bool Int64(std::int64_t) { return false; }
+  bool Uint64(std::uint64_t) { return false; }
+  bool Double(double) { return false; }
+  bool RawNumber(const char* s, rapidjson::SizeType n, bool) { return put(number({s, n})); }
   bool String(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }
   bool StartObject() { return open(Value::object()); }
   bool Key(const char* s, rapidjson::SizeType n, bool) {
@@ -122,6 +123,18 @@ class TreeBuilder {
  private:
   // The stream stands just behind the value; for scalars this is near enough to point a person to the line.
   Location here() { return places_.at(stream_.Tell() > 0 ? stream_.Tell() - 1 : 0); }
+  /// A whole number that fits into 64 bits, or the nearest double.
+  Value number(std::string_view text) {
+    const char *begin = text.data(), *end = begin + text.size();
+    std::int64_t whole = 0;
+    if (const auto read = std::from_chars(begin, end, whole); read.ec == std::errc() && read.ptr == end) return whole;
+    double value = 0.0;
+    if (std::from_chars(begin, end, value).ec != std::errc::result_out_of_range) return value;
+    const size_t exponent = text.find_first_of("eE");
+    const bool is_tiny = exponent == std::string_view::npos ? text.starts_with("0.") || text.starts_with("-0.") : text[exponent + 1] == '-';
+    if (!is_tiny) throw core::usage_error("a number too large to be stored", here().text());
+    return 0.0;
+  }
   Value& place(Value v) {
     v.where = here();
     if (open_.empty()) return root = std::move(v);
@@ -242,7 +255,8 @@ core::Value parse_json(const std::string& text, const std::string& name) {
   rapidjson::MemoryStream stream(text.data(), text.size());
   rapidjson::Reader reader;
   TreeBuilder builder(text, name, stream);
-  const rapidjson::ParseResult result = reader.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseIterativeFlag>(stream, builder);
+  const rapidjson::ParseResult result =
+      reader.Parse<rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseIterativeFlag>(stream, builder);
   if (!result) {
     Places places(text, name);
     throw core::usage_error(rapidjson::GetParseError_En(result.Code()), places.at(result.Offset()).text());

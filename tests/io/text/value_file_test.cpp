@@ -96,5 +96,18 @@ TEST(ValueFile, IntegersAbove32BitsStayIntegers) {
   EXPECT_EQ(parse_json("9223372036854775808", "x").as_number(), 9223372036854775808.0) << "what 64 bits do not hold is a number";
 }
 
+TEST(ValueFile, NumbersOfJsonAreTheNearestOnes) {
+  const auto number = [](const char* text) { return parse_json(text, "x").as_number(); };
+  for (const char* zero : {"0e147", "0.0e-999", "1e-400", "0.0000E+77"}) EXPECT_EQ(number(zero), 0.0) << zero;
+  EXPECT_EQ(number(("0." + std::string(400, '0') + "1").c_str()), 0.0);
+  EXPECT_EQ(number("2.2250738585072011e-308"), 2.2250738585072011e-308);
+  EXPECT_EQ(number("123456789012345678901234567890"), 123456789012345678901234567890.0);
+  EXPECT_EQ(parse_json("-9223372036854775808", "x").as_int(), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(parse_json("-0", "x").as_int(), 0);
+  for (const char* large : {"1e400", "-1E+999", "[1, 2e999]"}) EXPECT_THROW(parse_json(large, "x"), core::Error) << large;
+  for (const char* wrong : {"01", "1.", ".5", "+1", "1e", "0x1", "NaN", "Infinity"})
+    EXPECT_THROW(parse_json(wrong, "x"), core::Error) << wrong;
+}
+
 }  // namespace
 }  // namespace swath::io
