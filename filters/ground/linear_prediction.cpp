@@ -22,7 +22,11 @@ constexpr double settled = 0.02;       // largest change of a weight
 constexpr double least_weight = 0.01;  // points of less take no part: above three half widths
 constexpr double level_sigma = 1.0;    // rise / run
 
-double covariance(double squared_distance, double length) { return std::exp(-squared_distance / (length * length)); }
+/// Of the heights at (x, y) and at the places of two rows, as a share of the variance.
+template <class Places>
+auto covariances(const Places& places, double x, double y, double length) {
+  return (((places.row(0).array() - x).square() + (places.row(1).array() - y).square()) * (-1.0 / (length * length))).exp();
+}
 
 Eigen::Vector3d plane_through(const std::vector<Eigen::Vector3d>& points, const Eigen::VectorXd& weight, double sigma) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -41,10 +45,7 @@ Eigen::Vector3d plane_through(const std::vector<Eigen::Vector3d>& points, const 
 }  // namespace
 
 double PredictedSurface::height(double x, double y) const {
-  double z = plane[0] + plane[1] * x + plane[2] * y;
-  for (Eigen::Index k = 0; k < places.cols(); ++k)
-    z += factors[k] * covariance((places.col(k) - Eigen::Vector2d(x, y)).squaredNorm(), length);
-  return z;
+  return plane[0] + plane[1] * x + plane[2] * y + (covariances(places, x, y, length) * factors.transpose().array()).sum();
 }
 
 double one_sided_weight(double above, double shift, double half_width) {
@@ -59,10 +60,10 @@ PredictedSurface predict_robustly(const std::vector<Eigen::Vector3d>& points, co
   s.length = model.length;
   const auto n = static_cast<Eigen::Index>(points.size());
   if (n == 0) return s;
+  decltype(s.places) all(2, n);
+  for (Eigen::Index k = 0; k < n; ++k) all.col(k) = points[static_cast<size_t>(k)].head<2>();
   Eigen::MatrixXd correlation(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      correlation(i, j) = correlation(j, i) = covariance((points[i] - points[j]).head<2>().squaredNorm(), model.length);
+  for (Eigen::Index k = 0; k < n; ++k) correlation.col(k) = covariances(all, all(0, k), all(1, k), model.length).transpose();
 
   Eigen::VectorXd weight = Eigen::VectorXd::Ones(n);
   const double variance = model.sigma * model.sigma;

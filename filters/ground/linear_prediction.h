@@ -15,10 +15,10 @@ struct PredictionModel {
 
 /// A surface: a plane and the covariances with the points.
 struct PredictedSurface {
-  Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< height at (0, 0), rise along x, rise along y
-  Eigen::Matrix2Xd places;                          ///< of the points that carry it, m
-  Eigen::VectorXd factors;                          ///< per point, m
-  double length = 1.0;                              ///< m, as in the model
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();                   ///< height at (0, 0), rise along x, rise along y
+  Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> places;  ///< of the points that carry it, m
+  Eigen::VectorXd factors;                                           ///< per point, m
+  double length = 1.0;                                               ///< m, as in the model
 
   bool empty() const { return places.cols() == 0; }
   double height(double x, double y) const;
