@@ -107,7 +107,7 @@ struct BlockArguments {
   std::string config;
   std::filesystem::path folder = "block";
   std::vector<std::string> sets;
-  bool json = false;
+  bool quiet = false, json = false;
 };
 
 /// No product takes the place of what the block is read from: its config may be a block.json, its points in a folder colmap.
@@ -132,7 +132,7 @@ int block(const BlockArguments& a) {
   const std::vector<std::string> files = calib::write_block(a.folder, read, config, adjusted.solution, found);
   if (a.json) {
     print_json(core::reported(found));
-  } else {
+  } else if (!a.quiet) {
     print(calib::block_text(found));
     std::string text = "written to " + a.folder.string() + ":";
     for (const std::string& f : files) text += " " + f;
@@ -150,8 +150,9 @@ void add_block_command(Commands& commands) {
                          "control and self-calibration.",
                          [a] { return block(*a); });
   c->add_option("CONFIG", a->config, "Cameras, images, image points and control, .toml or .json")->required();
-  c->add_option("--output", a->folder, "Folder for orientations, cameras, points and report; default: block");
+  add_output(*c, a->folder, "Folder for orientations, cameras, points and report; default: block");
   c->add_option("--set", a->sets, "One option of it: drift=strip, adjust.robust=false")->allow_extra_args(false);
+  add_quiet(*c, a->quiet);
   c->add_flag("--json", a->json, "What block.json holds, on the terminal");
 }
 

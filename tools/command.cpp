@@ -97,17 +97,23 @@ CLI::Validator name_check() {
   return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "the name is empty" : ""; }, "");
 }
 
+CLI::Option* add_output(CLI::App& c, std::filesystem::path& folder, const std::string& text) {
+  return c.add_option("-o,--output", folder, text)->check(name_check());
+}
+
+void add_quiet(CLI::App& c, bool& quiet) { c.add_flag("--quiet", quiet, "Nothing but errors"); }
+
 void add_request(CLI::App& c, pipeline::Request& request) {
   c.add_option("CONFIG", request.config, "Pipeline, .toml or .json, or the name of one that comes with the program")->required();
   c.add_option("--survey", request.survey, "survey.toml, in place of the config's");
-  c.add_option("-o,--output", request.output, "Folder of the products, in place of the config's")->check(name_check());
+  add_output(c, request.output, "Folder of the products, in place of the config's");
   c.add_option("--set", request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
 }
 
 void add_run_options(CLI::App& c, pipeline::Request& request, Loudness& loudness, std::filesystem::path& save) {
   c.add_option("--threads", request.threads, "Threads, in place of the config's (0: one per processor)")->check(threads_check());
   c.add_option("--save-config", save, "Write what is run as a config for `swath run`: NAME.toml");
-  c.add_flag("--quiet", loudness.quiet, "Nothing but errors");
+  add_quiet(c, loudness.quiet);
   c.add_flag("--json-log", loudness.json_log, "Progress as one JSON object per line on standard error");
 }
 

@@ -61,6 +61,10 @@ double quantity(core::Dimension dimension, const std::string& text, const std::s
 
 /// Summary and missed limits of a run, where it has come to its report; the exit code.
 int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, const Loudness& loudness);
+/// -o and --output, as every command has them that writes into a folder.
+CLI::Option* add_output(CLI::App& command, std::filesystem::path& folder, const std::string& text);
+/// --quiet, as every command has it that writes files.
+void add_quiet(CLI::App& command, bool& quiet);
 /// --threads, --save-config, --quiet and --json-log.
 void add_run_options(CLI::App& command, pipeline::Request& request, Loudness& loudness, std::filesystem::path& save);
 

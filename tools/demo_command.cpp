@@ -39,7 +39,7 @@ void add_demo_command(Commands& commands) {
                    "Examples\n  swath demo\n  swath demo --output first --set world.scene=forest\n\nSimulate a survey, make its products, "
                    "and show the errors against its truth.",
                    [a, &commands] { return demo(*a, commands.typed()); });
-  c->add_option("-o,--output", a->folder, "Folder to make: survey/ with the records, products/")->capture_default_str();
+  add_output(*c, a->folder, "Folder to make: survey/ with the records, products/")->capture_default_str();
   c->add_option("--set", a->simulation, "One option of the simulation: seed=7, world.scene=forest")->allow_extra_args(false);
   add_run_options(*c, a->request, a->loudness, a->save);
 }

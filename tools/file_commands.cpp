@@ -69,7 +69,7 @@ void add_simulate_command(Commands& commands) {
   c->add_option("FOLDER", a->folder, "Folder to make the survey in")->required();
   c->add_option("--config", a->config, "Options of the simulation, .toml or .json");
   c->add_option("--set", a->sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+  add_quiet(*c, a->loudness.quiet);
 }
 
 void add_info_command(Commands& commands) {

@@ -57,7 +57,7 @@ void add_init_command(Commands& commands) {
       [a] { return init(*a); });
   c->add_option("FOLDER", a->folder, "Folder of the survey's files; survey.toml is written there")->required();
   c->add_flag("--print", a->print_only, "Print the proposal and write nothing");
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+  add_quiet(*c, a->loudness.quiet);
 }
 
 }  // namespace swath::tools

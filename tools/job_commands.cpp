@@ -252,8 +252,7 @@ void add_job(Commands& commands, const Job& job) {
   a->values.resize(job.options.size());
   auto* c = commands.add(job.name, job.help, [a, &job, &commands] { return run_job(job, *a, commands.typed()); });
   c->add_option("CLOUD", a->clouds, "LAS, LAZ, COPC, EPT or .vpc files, folders of them, or patterns")->required();
-  c->add_option("-o,--output", a->request.output, "Folder of the products; without it NAME_" + job.name + " in the working folder")
-      ->check(name_check());
+  add_output(*c, a->request.output, "Folder of the products; without it NAME_" + job.name + " in the working folder");
   for (size_t k = 0; k < job.options.size(); ++k) {
     const JobOption& o = job.options[k];
     c->add_option(o.flag, a->values[k], o.help + ", for example " + o.example);

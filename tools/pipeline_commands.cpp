@@ -142,7 +142,7 @@ void add_pipeline_commands(Commands& commands) {
                    "survey, without reading data.",
                    [checked] { return check(*checked); });
   add_request(*c, checked->request);
-  c->add_flag("--quiet", checked->loudness.quiet, "Nothing but faults");
+  add_quiet(*c, checked->loudness.quiet);
 
   const auto explained = std::make_shared<Given>();
   c = commands.add("explain",

@@ -20,8 +20,10 @@ int plan_flight(const PlanArguments& a) {
   if (pipeline::is_pipeline(a.request.config))
     throw core::usage_error("it is a pipeline, not a flight plan", a.request.config.string(), "`swath tasks` lists the tasks of its run");
   const planning::FlightPlan plan = pipeline::write_flight_plan(a.request);
-  if (a.quiet) return 0;
-  a.json ? print_json(core::reported(plan)) : print(pipeline::plan_text(plan));
+  if (a.json)
+    print_json(core::reported(plan));
+  else if (!a.quiet)
+    print(pipeline::plan_text(plan));
   return 0;
 }
 
@@ -53,9 +55,9 @@ void add_plan_command(Commands& commands) {
                    [a] { return plan_flight(*a); });
   c->add_option("PLAN", a->request.config, "What is asked of the flight, .toml or .json")->required();
   c->add_option("--dem", a->request.dem, "Terrain model, in place of the config's");
-  c->add_option("--output", a->request.folder, "Folder to write to")->required();
+  add_output(*c, a->request.folder, "Folder to write to")->required();
   c->add_option("--set", a->request.sets, "One option of the plan: flight.speed=\"60 m/s\"")->allow_extra_args(false);
-  c->add_flag("--quiet", a->quiet, "Nothing but errors");
+  add_quiet(*c, a->quiet);
   c->add_flag("--json", a->json, "The plan as JSON");
 }
 

@@ -167,8 +167,8 @@ void add_map_terrain_command(Commands& commands) {
   c->add_option("--flats", a->flats, "Triangles that join a contour with itself: fill by least bending, or keep")
       ->check(CLI::IsMember({"fill", "keep"}))
       ->capture_default_str();
-  c->add_option("--output", a->request.folder, "Folder to write to")->required();
-  c->add_flag("--quiet", a->quiet, "Nothing but errors");
+  add_output(*c, a->request.folder, "Folder to write to")->required();
+  add_quiet(*c, a->quiet);
   c->add_flag("--json", a->json, "What was found, as JSON");
 }
 
@@ -189,8 +189,8 @@ void add_profile_command(Commands& commands) {
   c->add_option("--stations", a->stations, "Sections across the line every so far, in place of one along it, as tables");
   c->add_option("--width", a->width, "Of a section across")->capture_default_str();
   c->add_option("--design", a->design, "Surface (raster) or height that sections across are compared with: areas, volumes");
-  c->add_option("--output", a->request.folder, "Folder to write to")->required();
-  c->add_flag("--quiet", a->quiet, "Nothing but errors");
+  add_output(*c, a->request.folder, "Folder to write to")->required();
+  add_quiet(*c, a->quiet);
   c->add_flag("--json", a->json, "What was found, as JSON");
 }
 

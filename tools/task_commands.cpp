@@ -18,7 +18,7 @@ struct TaskListArguments {
   pipeline::Request request;
   std::filesystem::path save, slurm;
   int parts = 8;
-  bool json = false;
+  bool quiet = false, json = false;
 };
 
 /// The program itself, for scripts that call it from elsewhere.
@@ -37,7 +37,10 @@ int list_tasks(const TaskListArguments& a) {
   const std::string json = io::to_json(core::reported(graph));
   if (!a.save.empty()) io::write_text_file(a.save, json);
   if (!a.slurm.empty()) io::write_text_file(a.slurm, pipeline::slurm_script(graph, a.save, own_program()));
-  a.json ? static_cast<void>(std::fputs(json.c_str(), stdout)) : print(pipeline::task_text(graph));
+  if (a.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!a.quiet)
+    print(pipeline::task_text(graph));
   return 0;
 }
 
@@ -71,6 +74,7 @@ void add_task_commands(Commands& commands) {
   tasks->add_option("--parts", list->parts, "Tasks of each wave that can be shared")->capture_default_str();
   tasks->add_option("--save", list->save, "File to write the tasks to, .json");
   tasks->add_option("--slurm", list->slurm, "Script to write that gives the tasks to Slurm as job arrays");
+  add_quiet(*tasks, list->quiet);
   tasks->add_flag("--json", list->json, "The tasks as JSON");
 
   const auto a = std::make_shared<TaskArguments>();
@@ -80,9 +84,9 @@ void add_task_commands(Commands& commands) {
                          [a, &commands] { return do_task(*a, commands.typed()); });
   c->add_option("ID", a->id, "The task, as `swath tasks` names it")->required();
   c->add_option("--tasks", a->tasks, "File that `swath tasks --save` wrote")->required();
-  c->add_option("--output", a->output, "Folder of the products, in place of the file's: the same for every task");
+  add_output(*c, a->output, "Folder of the products, in place of the file's: the same for every task");
   c->add_option("--threads", a->threads, "Threads (0: one per processor)")->capture_default_str()->check(threads_check());
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+  add_quiet(*c, a->loudness.quiet);
   c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
 }
 

@@ -20,6 +20,7 @@ struct UndistortArguments {
   std::vector<std::string> images;
   std::string cameras, camera;
   fs::path folder = "undistorted";
+  bool quiet = false;
 };
 
 const calib::CameraConfig& chosen(const std::vector<calib::CameraConfig>& cameras, const UndistortArguments& a) {
@@ -52,7 +53,7 @@ int undistort(const UndistortArguments& a) {
   }
   io::write_text_file(a.folder / camera_name,
                       "# Camera of these images: no distortion, principal point in the middle.\n" + calib::undistorted_camera(camera));
-  print(core::counted(a.images.size(), "image") + " written to " + a.folder.string() + "\n");
+  if (!a.quiet) print(core::counted(a.images.size(), "image") + " written to " + a.folder.string() + "\n");
   return 0;
 }
 
@@ -68,7 +69,8 @@ void add_undistort_command(Commands& commands) {
   c->add_option("IMAGES", a->images, "Images as the camera took them: TIFF, JPEG, PNG and others")->required();
   c->add_option("--camera", a->cameras, "Table of the camera: camera.toml of `swath block`")->required();
   c->add_option("--name", a->camera, "Name of the camera, where the file has several");
-  c->add_option("--output", a->folder, "Folder for TIFF images and their camera.toml; default: undistorted");
+  add_output(*c, a->folder, "Folder for TIFF images and their camera.toml; default: undistorted");
+  add_quiet(*c, a->quiet);
 }
 
 }  // namespace swath::tools

@@ -103,7 +103,7 @@ void add_view_command(Commands& commands) {
   c->add_option("--points", a->points, "About as many points at most; without it 1 000 000 in a file, 3 000 000 served")
       ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{20000000}));
   c->add_option("--port", a->port, "Port to serve on; without it any that is free")->check(CLI::Range(1, 65535));
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+  add_quiet(*c, a->loudness.quiet);
 }
 
 }  // namespace swath::tools

@@ -36,6 +36,21 @@ class Help(Case):
             self.assertRegex(overview, rf"(?m)^  {command} +\S")
         self.assertNotIn("Examples", overview)
 
+    def test_options_of_one_meaning_have_one_form(self):
+        commands = re.findall(r"(?m)^  ([a-z][a-z-]+) ", swath("--help").stdout.split("Subcommands:")[1])
+        self.assertGreater(len(commands), 25)
+        writing = set()
+        for command in commands:
+            options = swath(command, "--help").stdout.split("OPTIONS:")[-1]
+            if re.search(r"(?m)^ .*--output\b", options):
+                writing.add(command)
+                self.assertRegex(options, r"(?m)^ +-o, *--output\b", command)
+                if command != "explain":  # prints, and takes --output as an option of the run alone
+                    self.assertRegex(options, r"(?m)^ +--quiet +Nothing but errors", command)
+        self.assertLessEqual({"run", "dtm", "demo", "plan", "map-dtm", "profile", "block", "undistort", "task", "tasks"}, writing)
+        self.assert_error(swath("map-dtm", "none.gpkg", "-o", self.folder / "map"), 1, "none.gpkg")
+        self.assert_error(swath("map-dtm", "none.gpkg", "-o", ""), 2, "the name is empty")
+
     def test_version(self):
         self.assertRegex(swath("--version").stdout, r"^swath \d+\.\d+\.\d+\n$")
 
