@@ -105,7 +105,8 @@ struct Codec<std::string> {
 template <>
 struct Codec<std::filesystem::path> {
   static Shape shape() { return {Kind::path}; }
-  static Value get(const std::filesystem::path& v) { return v.generic_string(); }
+  /// As it is written: generic_string() would make "s3:/bucket/a.laz" of an address.
+  static Value get(const std::filesystem::path& v) { return v.string(); }
   static void set(std::filesystem::path& o, const Value& v) { o = v.as_text(); }
 };
 template <class E>

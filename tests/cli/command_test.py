@@ -149,6 +149,12 @@ class Looks(Case):
         self.assertEqual(text.returncode, 0)
         self.assertIn("filters.ground", text.stdout)
 
+    def test_explain_shows_addresses_as_they_are_written(self):
+        done = swath("explain", "qc", "--set", "quality.surface.reference=s3://bucket/dtm.tif", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        surface = next(s for s in json.loads(done.stdout)["stages"] if s["type"] == "quality.surface")["options"]
+        self.assertEqual(surface["reference"]["value"], "s3://bucket/dtm.tif")
+
     def test_stages(self):
         done = swath("stages")
         names = [line.split()[0] for line in done.stdout.strip().split("\n")]

@@ -38,7 +38,7 @@ std::vector<CheckFileRead> tables_read(const io::Survey& survey) {
   std::vector<CheckFileRead> out;
   for (const io::ControlFile& f : survey.control)
     if (f.use == io::ControlUse::check && f.kind == io::ControlKind::xyz && core::lower_case(f.file.extension().string()) != ".gpkg")
-      out.push_back({f.file.generic_string(), f.name, f.x, f.y, f.z});
+      out.push_back({f.file.string(), f.name, f.x, f.y, f.z});
   return out;
 }
 

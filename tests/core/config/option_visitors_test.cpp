@@ -93,6 +93,20 @@ TEST(OptionVisitors, EffectiveValuesReadBackAndFingerprintFollows) {
   EXPECT_NE(fingerprint_of(described(t)), before);
 }
 
+struct Files {
+  std::filesystem::path file;
+};
+template <class V>
+void describe(Files& f, V& v) {
+  v.option("file", f.file, "A file, or an address in an object store.");
+}
+
+TEST(OptionVisitors, AddressesStayAsTheyAreWritten) {
+  Files f{"s3://bucket/folder/a.laz"}, other{"s3:/bucket/folder/a.laz"};
+  EXPECT_EQ(effective_values(described(f)).find("file")->as_text(), "s3://bucket/folder/a.laz");
+  EXPECT_NE(fingerprint_of(described(f)), fingerprint_of(described(other)));
+}
+
 TEST(OptionVisitors, DocumentsAndSchema) {
   Sample s;
   const std::string table = option_table_markdown(described(s));
