@@ -53,14 +53,33 @@ DRAWN = """(() => { const v = swathView.view, gl = v.renderer.getContext(), w = 
   return {share: n / (w * h), colours: colours.size}; })()"""
 
 
-def geocentric(file):
-    """Two points in ECEF, which GeoTIFF keys state."""
-    write_las(file, [(4146000.0, 613000.0, 4791000.0), (4146001.0, 613001.0, 4791001.0)], scale=0.01)
+def in_crs(file, points, *keys):
+    """A cloud whose GeoTIFF keys state its CRS; `keys`: number and value of each."""
+    write_las(file, points, scale=0.01)
     data = bytearray(file.read_bytes())
-    keys = struct.pack("<12H", 1, 1, 0, 2, 1024, 0, 1, 3, 2048, 0, 1, 4978)
+    entries = [v for number, value in keys for v in (number, 0, 1, value)]
+    keys = struct.pack(f"<{4 + len(entries)}H", 1, 1, 0, len(entries) // 4, *entries)
     data[227:227] = struct.pack("<H16sHH32s", 0, b"LASF_Projection", 34735, len(keys), b"") + keys
     struct.pack_into("<II", data, 96, 227 + 54 + len(keys), 1)
     file.write_bytes(bytes(data))
+
+
+SOUTH_UP = ('PROJCS["south up",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],'
+            'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",19],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],'
+            'PARAMETER["false_northing",0],UNIT["metre",1],AXIS["Y",WEST],AXIS["X",SOUTH]]').encode()
+
+
+def south_up(tile, file):
+    """The LAZ file in a CRS that no page shows; its points are cut off, so that whoever reads them fails."""
+    data = bytearray(tile.read_bytes()[:tile.stat().st_size * 7 // 10])
+    at, count = struct.unpack_from("<H", data, 94)[0], struct.unpack_from("<I", data, 100)[0]
+    for _ in range(count):
+        user, number, length = struct.unpack_from("<16sHH", data, at + 2)
+        if user.startswith(b"LASF_Projection") and number == 2112:
+            data[at + 54:at + 54 + length] = SOUTH_UP.ljust(length, b"\0")[:length]
+        at += 54 + length
+    file.write_bytes(bytes(data))
+    return file
 
 
 def only(layer):
@@ -256,9 +275,10 @@ class Saved(Pages):
                                    (self.folder / "notes.txt", 2, "neither a cloud nor a folder"), (broken, 1, "broken.laz")):
             self.assert_error(swath("view", given, "--save", self.folder / "x.html"), code, words)
             self.assertFalse((self.folder / "x.html").exists())
-        geocentric(self.folder / "space.las")
+        in_crs(self.folder / "space.las", [(4146000.0, 613000.0, 4791000.0), (4146001.0, 613001.0, 4791001.0)], (1024, 3), (2048, 4978))
         self.assert_error(swath("view", self.folder / "space.las", "--save", self.folder / "x.html", "--quiet"), 1, "geocentric", "cloud.toml")
         self.assert_error(swath("view", tile, "--save", tile), 2, tile.name)
+        self.assert_error(swath("view", south_up(tile, self.folder / "south.laz"), "--save", self.folder / "x.html"), 2, "axes are westing and southing", "UTM zone")
         self.assert_error(swath("view", self.products, "--save", self.folder / "x.html", "--port", "8000"), 2, "exclude each other")
 
 

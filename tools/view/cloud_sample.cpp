@@ -47,12 +47,7 @@ std::uint64_t mixed(std::uint64_t v) {
   return v ^ (v >> 31);
 }
 
-struct Source {
-  fs::path file;
-  io::LasHeader header;
-  io::LasPart part;
-  std::uint64_t points = 0;  ///< of the part
-};
+using Source = CloudSources::Source;
 
 /// The first levels of a COPC file that hold `share` of its points.
 void take_levels(Source& s, const io::CopcInfo& info, double share) {
@@ -75,32 +70,6 @@ void take_levels(Source& s, const io::CopcInfo& info, double share) {
   }
 }
 
-std::vector<Source> sources_of(const std::vector<fs::path>& files, CloudSample& sample) {
-  std::vector<Source> out;
-  const Source* named = nullptr;
-  for (const fs::path& file : files) {
-    std::vector<std::string> ignored;
-    Source s{file, io::read_las_header(file, ignored), {}, 0};
-    s.points = s.header.point_count;
-    sample.of += s.points;
-    if (s.points == 0) continue;
-    s.part.unused = not_shown();
-    out.push_back(std::move(s));
-  }
-  if (out.empty()) throw core::Error("no point to show", files.front().string(), "its header counts 0 points");
-  for (const Source& s : out) {
-    const std::string crs = io::las_crs(s.header).definition;
-    if (named && !crs.empty() && !core::is_same_crs(core::Crs(crs), core::Crs(sample.crs)))
-      throw core::Error("is in another coordinate reference system than " + named->file.string(), s.file.string(),
-                        "run configs/cloud.toml over both, which brings clouds to one, and view its output");
-    if (!crs.empty() && !named) {
-      named = &s;
-      sample.crs = crs;
-    }
-  }
-  return out;
-}
-
 void sort_by_place(CloudSample& sample, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   const io::OctreeCube cube = io::OctreeCube::around(low, high);
   const core::Block& b = sample.points;
@@ -115,9 +84,36 @@ void sort_by_place(CloudSample& sample, const Eigen::Vector3d& low, const Eigen:
 
 }  // namespace
 
-CloudSample sample_clouds(const std::vector<fs::path>& files, std::uint64_t most, const core::OnProgress& progress) {
+CloudSources open_clouds(const std::vector<fs::path>& files) {
+  CloudSources out;
+  for (const fs::path& file : files) {
+    std::vector<std::string> ignored;
+    Source s{file, io::read_las_header(file, ignored), {}, 0};
+    s.points = s.header.point_count;
+    out.points += s.points;
+    if (s.points == 0) continue;
+    s.part.unused = not_shown();
+    out.files.push_back(std::move(s));
+  }
+  if (out.files.empty()) throw core::Error("no point to show", files.front().string(), "its header counts 0 points");
+  const Source* named = nullptr;
+  for (const Source& s : out.files) {
+    const std::string crs = io::las_crs(s.header).definition;
+    if (named && !crs.empty() && !core::is_same_crs(core::Crs(crs), core::Crs(out.crs)))
+      throw core::Error("is in another coordinate reference system than " + named->file.string(), s.file.string(),
+                        "run configs/cloud.toml over both, which brings clouds to one, and view its output");
+    if (!crs.empty() && !named) {
+      named = &s;
+      out.crs = crs;
+    }
+  }
+  return out;
+}
+
+CloudSample sample_clouds(CloudSources clouds, std::uint64_t most, const core::OnProgress& progress) {
   CloudSample sample;
-  std::vector<Source> sources = sources_of(files, sample);
+  sample.of = clouds.points;
+  std::vector<Source>& sources = clouds.files;
   const double share = static_cast<double>(most) / static_cast<double>(sample.of);
   Eigen::Vector3d low = sources[0].header.min, high = sources[0].header.max;
   std::uint64_t to_read = 0;
@@ -128,7 +124,7 @@ CloudSample sample_clouds(const std::vector<fs::path>& files, std::uint64_t most
     to_read += s.points;
   }
   const io::LasHeader& first = sources[0].header;
-  const bool degrees = !sample.crs.empty() && core::Crs(sample.crs).is_geographic();
+  const bool degrees = !clouds.crs.empty() && core::Crs(clouds.crs).is_geographic();
   for (int k = 0; k < 3; ++k) {
     sample.scale[k] = degrees && k < 2 ? first.scale[k] : std::max(first.scale[k], finest_step);
     while ((high[k] - low[k]) / sample.scale[k] > 2e9) sample.scale[k] *= 10.0;

@@ -69,6 +69,16 @@ std::string text_at(const Value& table, std::string_view key) {
   return v && v->is_text() ? v->as_text() : std::string();
 }
 
+/// The CRS of what is shown; points are not read where the page cannot show it.
+core::Crs require_map(const std::string& definition, const fs::path& file) {
+  core::Crs crs = definition.empty() ? core::Crs() : core::Crs(definition);
+  if (!crs.empty() && crs.is_geocentric())
+    throw core::Error("coordinates are geocentric (" + crs.name() + "), and a page shows a map", file.string(),
+                      "bring them to a CRS of the map first: swath run configs/cloud.toml, and view its output");
+  core::require_easting_northing(crs, file.string());
+  return crs;
+}
+
 }  // namespace
 
 void add_report(Scene& scene, const ProductFiles& files, const std::vector<std::string>& notes) {
@@ -98,22 +108,17 @@ Scene make_scene(const ProductFiles& files, const SceneOptions& options, const c
   Scene scene;
   std::vector<std::string> notes;
   const Value run = files.report.empty() ? Value::object() : io::read_value_file(files.report);
-  std::string definition = definition_in(run);
-  if (!files.clouds.empty()) {
-    const std::string stated = add_points(scene, files, options, progress);
-    if (!stated.empty()) definition = stated;
+  core::Crs crs;
+  if (files.clouds.empty()) {
+    crs = require_map(io::read_raster_info(files.terrain).crs_wkt, files.terrain);
+  } else {
+    CloudSources clouds = open_clouds(files.clouds);
+    crs = require_map(clouds.crs.empty() ? definition_in(run) : clouds.crs, files.clouds.front());
+    add_points(scene, std::move(clouds), options, progress);
   }
   if (!files.terrain.empty()) add_terrain(scene, files.terrain, options);
-  if (files.clouds.empty()) {
-    definition = io::read_raster_info(files.terrain).crs_wkt;
-    add_extent(scene);
-  }
+  if (files.clouds.empty()) add_extent(scene);
   if (!files.contours.empty()) add_contours(scene, files.contours, options);
-  const core::Crs crs = definition.empty() ? core::Crs() : core::Crs(definition);
-  if (!crs.empty() && crs.is_geocentric())
-    throw core::Error("coordinates are geocentric (" + crs.name() + "), and a page shows a map", files.clouds.front().string(),
-                      "bring them to a CRS of the map first: swath run configs/cloud.toml, and view its output");
-  core::require_easting_northing(crs, (files.clouds.empty() ? files.terrain : files.clouds.front()).string());
   if (!files.trajectory.empty() && !crs.empty()) try {
       add_trajectory(scene, files.trajectory, crs);
     } catch (const core::Error& e) {

@@ -10,6 +10,7 @@
 #include "core/config/value.h"
 #include "core/geo/crs.h"
 #include "core/on_progress.h"
+#include "tools/view/cloud_sample.h"
 #include "tools/view/packed.h"
 
 namespace swath::tools {
@@ -38,13 +39,12 @@ struct Scene {
 /// The products of an output folder, or the clouds that are given. Throws core::Error where there is nothing to show.
 ProductFiles products_of(const std::vector<std::filesystem::path>& given);
 
-/// Reads and packs them.
+/// Reads and packs them. Throws core::Error where no page can show the CRS, before points are read.
 Scene make_scene(const ProductFiles& files, const SceneOptions& options, const core::OnProgress& progress);
 
 // The parts of the scene, put into its table and blobs.
 
-/// Returns the definition of the clouds' CRS.
-std::string add_points(Scene& scene, const ProductFiles& files, const SceneOptions& options, const core::OnProgress& progress);
+void add_points(Scene& scene, CloudSources clouds, const SceneOptions& options, const core::OnProgress& progress);
 void add_terrain(Scene& scene, const std::filesystem::path& file, const SceneOptions& options);
 void add_contours(Scene& scene, const std::filesystem::path& file, const SceneOptions& options);
 /// Throws core::Error where its positions have no way to the CRS.

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "report/html.h"
-#include "tools/view/cloud_sample.h"
 #include "tools/view/scene.h"
 
 namespace swath::tools {
@@ -59,8 +58,8 @@ void add_box(core::Value& about, const core::Block& b) {
 
 }  // namespace
 
-std::string add_points(Scene& scene, const ProductFiles& files, const SceneOptions& options, const core::OnProgress& progress) {
-  const CloudSample sample = sample_clouds(files.clouds, options.points, progress);
+void add_points(Scene& scene, CloudSources clouds, const SceneOptions& options, const core::OnProgress& progress) {
+  const CloudSample sample = sample_clouds(std::move(clouds), options.points, progress);
   const core::Block& b = sample.points;
   core::Value& about = scene.table["points"];
   about["shown"] = static_cast<std::uint64_t>(b.size());
@@ -87,7 +86,6 @@ std::string add_points(Scene& scene, const ProductFiles& files, const SceneOptio
   about["columns"] = packer.table;
   std::move(packer.blobs.begin(), packer.blobs.end(), std::back_inserter(scene.blobs));
   scene.about = (options.streams ? std::string() : report::count_text(b.size()) + " of ") + report::count_text(sample.of) + " points";
-  return sample.crs;
 }
 
 }  // namespace swath::tools
