@@ -125,7 +125,7 @@ std::string unit_list(Dimension d) {
 }
 
 const Unit* find_unit(Dimension d, std::string_view name) {
-  constexpr std::string_view survey_foot = "us-ft", as_others_write_it[] = {"ftUS", "US-ft", "ft_us", "usft"};
+  constexpr std::string_view survey_foot = "us-ft", as_others_write_it[] = {"ftUS", "US-ft", "ft_us", "usft", "US survey foot"};
   if (std::find(std::begin(as_others_write_it), std::end(as_others_write_it), name) != std::end(as_others_write_it)) name = survey_foot;
   for (const Unit& u : units())
     if (u.dimension == d && u.name == name) return &u;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/geo/height_unit.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 
 #include "core/config/units.h"
 
@@ -33,16 +31,12 @@ std::string unit_symbol(double metres) {
 }
 
 std::optional<double> metres_of_unit_name(std::string_view name) {
-  const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  if (is_one_of({"m", "metre", "meter"})) return 1.0;
-  if (is_one_of({"ft", "foot"})) return international_foot;
   if (double metres = 0.0;
       name.starts_with(other_units) && std::sscanf(std::string(name).c_str(), "units of %lf m", &metres) == 1 && metres > 0.0)
     return metres;
-  if (is_one_of({"US survey foot", "ftUS", "us-ft", "US-ft", "ft_us"})) return survey_foot;
-  return std::nullopt;
+  const bool is_metre = name == "metre" || name == "meter";
+  const Unit* unit = find_unit(Dimension::length, is_metre ? "m" : name == "foot" ? "ft" : name);
+  return unit ? std::optional(unit->factor) : std::nullopt;
 }
 
 std::string with_height_unit(const Crs& crs, double metres, std::string_view heights) {

@@ -19,8 +19,8 @@ std::string height_unit_name(double metres);
 /// Its symbol, as bands of rasters, axes of charts and tables of values have it: "m", "ft", "ftUS"; "units of 0.201168 m" for any other.
 std::string unit_symbol(double metres);
 
-/// Metres of a unit by the names that files have for it: "m", "metre", "meter", "ft", "foot", "US survey foot", "us-ft", "ftUS" ...;
-/// nothing for any other.
+/// Metres of a unit by the names that files have for it: "metre", "meter", "foot", what unit_symbol() writes, and the units of length of
+/// core/config/units.h with their other names ("US survey foot", "us-ft", "ftUS" ...); nothing for any other.
 std::optional<double> metres_of_unit_name(std::string_view name);
 
 /// Definition of `crs`, which has no vertical part, with one on an unknown datum: it states the unit of heights alone, `metres`, under the

@@ -155,7 +155,7 @@ TEST_F(CheckPoints, HeightsInFeetAreThoseOfTheSurvey) {
   test::write_bytes(*folder_ / "survey.toml", survey);
   const std::string table = test::read_bytes(out / "a/check_points.csv");
   EXPECT_NE(table.find(",unit,height_unit,difference_unit\n"), std::string::npos) << table.substr(0, 200);
-  EXPECT_NE(table.find(",metre,foot,metre\n"), std::string::npos);
+  EXPECT_NE(table.find(",m,ft,m\n"), std::string::npos);
   EXPECT_TRUE(codes(done).empty());
   for (const core::Value& a : findings(done).find("accuracy")->items()) EXPECT_LT(a.find("rms")->as_number(), 0.12);
 }

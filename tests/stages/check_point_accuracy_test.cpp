@@ -7,6 +7,7 @@
 
 #include "stages/adapters/quality/mark_accuracy.h"
 #include "stages/adapters/quality/mark_files.h"
+#include "stages/adapters/quality/quality_facts.h"
 #include "stages/adapters/quality/seen_cells.h"
 #include "tests/stages/tile_work.h"
 
@@ -194,10 +195,23 @@ TEST(CheckPointFiles, NamesAndCoversAreOneFieldEach) {
   m.add("=1+1", 0.02);
   write_marks(w.context, "marks", m.list, m.found, {});
   const std::string table = test::read_bytes(w.folder / "products/marks.csv");
-  EXPECT_NE(table.find("\"A \"\"7\"\"\",600000.000,5300000.000,400.000,0.0200,\"grass, short\",0.0100,,0.0300,0.0000,,metre,metre,metre\n"),
+  EXPECT_NE(table.find("\"A \"\"7\"\"\",600000.000,5300000.000,400.000,0.0200,\"grass, short\",0.0100,,0.0300,0.0000,,m,m,m\n"),
             std::string::npos)
       << table;
   EXPECT_NE(table.find("p2,600001.000,5300000.000,400.000,0.0200,'=1+1,"), std::string::npos) << table;
+}
+
+TEST(CheckPointFiles, UnitsAreNamedByTheirSymbols) {
+  Work w;
+  w.context.crs = core::Crs("EPSG:2225+6360");  // feet; NAVD88 in US survey feet
+  w.context.product_crs = "EPSG:2225+6360";
+  w.context.unit = w.context.vertical_unit = 1200.0 / 3937.0;
+  EXPECT_EQ(quality_facts(w.context, {}).unit, "ftUS");
+  Marks m;
+  m.add("grass", 0.01);
+  write_marks(w.context, "marks", m.list, m.found, {});
+  const std::string table = test::read_bytes(w.folder / "products/marks.csv");
+  EXPECT_NE(table.find(",ftUS,ftUS,m\n"), std::string::npos) << table;
 }
 
 }  // namespace

@@ -46,11 +46,10 @@ void write_marks(const Context& context, const std::string& name, const std::vec
                  const std::vector<MarkFound>& found, const std::vector<quality::MarkReading>& readings) {
   std::string table =
       "name,x,y,z,sigma,cover,points_minus_mark,dtm_minus_mark,predicted_sigma,slope,lines,unit,height_unit,difference_unit\n";
-  const std::string unit = context.crs.empty() ? "metre" : context.crs.unit_name(),
-                    height_unit = core::height_unit_name(context.vertical_unit);
-  const std::string units = "," + core::csv_field(unit) + "," + core::csv_field(height_unit) + ",metre\n";
+  const std::string unit = core::unit_symbol(context.unit), height_unit = core::unit_symbol(context.vertical_unit);
+  const std::string units = "," + core::csv_field(unit) + "," + core::csv_field(height_unit) + ",m\n";
   io::FeatureLayer layer{"marks",
-                         "Check points; z in " + height_unit + ", sigmas and differences (product minus check point) in metre",
+                         "Check points; z in " + height_unit + ", sigmas and differences (product minus check point) in m",
                          io::FeatureShape::point,
                          {"name", "cover", "place", "lines"},
                          {"z", "sigma", "points_minus_mark", "dtm_minus_mark", "predicted_sigma", "slope"},

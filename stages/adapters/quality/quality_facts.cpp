@@ -104,7 +104,7 @@ QualityFacts quality_facts(const Context& context, const quality::StatedLimits& 
   f.crs = context.crs.empty() ? "" : context.crs.name();
   f.heights = context.heights;
   f.metres = context.unit;
-  if (!core::is_same_unit(context.unit, 1.0)) f.unit = context.crs.unit_name();
+  f.unit = core::unit_symbol(context.unit);
   f.density = facts_in(context, "density.json");
   f.swath = facts_in(context, "swath.json");
   f.lines = facts_in(context, "lines.json");

@@ -36,7 +36,7 @@ class Facts {
 
 struct QualityFacts {
   std::string survey, crs, heights;
-  std::string unit = "m";  ///< of places on the map
+  std::string unit = "m";  ///< of places on the map, as core::unit_symbol() has it
   double metres = 1.0;     ///< of one such unit
   Facts density, swath, lines, surface, points;
   std::string level = "none";

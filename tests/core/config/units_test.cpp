@@ -12,7 +12,7 @@ TEST(Units, ReadsEveryUnitAndShowsTheFirst) {
   std::string fault;
   EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::length, "12.5 cm", fault), 0.125);
   EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::length, "-3ft", fault), -0.9144);
-  for (const char* survey_foot : {"3937 us-ft", "3937 ftUS", "3937 US-ft", "3937 ft_us"})
+  for (const char* survey_foot : {"3937 us-ft", "3937 ftUS", "3937 US-ft", "3937 ft_us", "3937 usft", "3937 US survey foot"})
     EXPECT_DOUBLE_EQ(parse_quantity(Dimension::length, survey_foot, fault).value_or(0.0), 1200.0) << survey_foot;
   EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::angle, "180 deg", fault), pi);
   EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::temperature, "15 degC", fault), 288.15);

@@ -28,7 +28,9 @@ TEST(HeightUnit, IsStatedBesideACrsThatLeavesItOpen) {
 TEST(HeightUnit, IsKnownByItsNamesInFiles) {
   EXPECT_EQ(metres_of_unit_name("metre"), 1.0);
   EXPECT_EQ(metres_of_unit_name("ft"), 0.3048);
-  EXPECT_EQ(metres_of_unit_name("US survey foot"), 1200.0 / 3937.0);
+  for (const char* name : {"US survey foot", "ftUS", "us-ft", "US-ft", "ft_us", "usft"})
+    EXPECT_EQ(metres_of_unit_name(name), 1200.0 / 3937.0) << name;
+  EXPECT_EQ(metres_of_unit_name("cm"), 0.01);
   EXPECT_FALSE(metres_of_unit_name("unknown") || metres_of_unit_name(""));
 }
 
