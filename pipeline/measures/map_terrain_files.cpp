@@ -138,7 +138,7 @@ MapTerrainFound write_map_terrain(const MapTerrainRequest& r) {
     throw core::Error("the map is in degrees", r.files.front().string(), "name a projected CRS for the model: --crs EPSG:25832");
   const double vertical = settle_heights(files, r, crs);
   MapTerrainFound found;
-  if (!crs.empty()) found.height_unit = core::height_unit_name(vertical);
+  if (!crs.empty()) found.height_unit = core::unit_symbol(vertical);
   const terrain::MapContent content = content_of(std::move(files), crs, found);
   const auto heights = [&](std::optional<double> v) { return v ? std::optional(*v / vertical) : v; };
   terrain::MapTerrain made = terrain::map_terrain(
@@ -167,7 +167,7 @@ std::string map_terrain_text(const MapTerrainFound& f) {
   std::snprintf(line, sizeof line, "%zu cells of %.6g%s, %zu void; flat parts filled: %zu, left flat: %zu\n", f.cells, f.cell, unit.c_str(),
                 f.voids, f.flat_parts, f.flat_parts_left);
   out += line;
-  if (!f.height_unit.empty()) out += "heights of the model in " + f.height_unit + "; errors in m\n";
+  if (!f.height_unit.empty()) out += "heights of the model in " + f.height_unit + "; lengths and errors in m\n";
   std::snprintf(line, sizeof line, "%-18s %12s %12s %14s %14s %10s\n", "part", "cells", "tested", "every second", "every fourth", "sigma");
   out += line;
   for (const terrain::MapError& e : f.errors) {

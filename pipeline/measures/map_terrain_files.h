@@ -34,17 +34,19 @@ struct MapTerrainFound {
   std::size_t cells = 0, voids = 0;
   std::size_t flat_parts = 0, flat_parts_left = 0;
   std::vector<terrain::MapError> errors;
-  std::string height_unit;  ///< of the model; empty without a CRS
+  std::string height_unit;  ///< symbol of that of the model's heights; empty without a CRS
 };
 template <class V>
 void describe(const MapTerrainFound& f, V& v) {
   v.result("contours", f.contours, "Lines of one height.");
   v.result("levels", f.levels, "Heights that contours have.");
+  v.result("units", std::string_view(f.height_unit.empty() ? "those of the file, which states no CRS" : "m"),
+           "Unit of interval, cell and errors.");
   v.result("interval", f.interval, "Height between contours, stated or usual.");
   v.result("spot_heights", f.spots, "Points with a height.");
   v.result("breaklines", f.breaklines, "Lines whose height changes.");
   v.result("without_height", f.without_height, "Lines and points without a height, left out.");
-  v.result("height_unit", f.height_unit, core::Form{}.only_if(!f.height_unit.empty()), "Unit of the model's heights.");
+  v.result("dtm_height_unit", f.height_unit, core::Form{}.only_if(!f.height_unit.empty()), "Unit of the heights of dtm.tif.");
   v.result("cell", f.cell, "Side of the cells.");
   v.result("cells", f.cells, "Cells with a height.");
   v.result("voids", f.voids, "Cells without one, inside the map's frame.");

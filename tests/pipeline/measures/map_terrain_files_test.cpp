@@ -90,10 +90,12 @@ TEST(MapTerrainFiles, LengthsInFeetAreFeetInTheFileAndMetresInTheAnswer) {
   const MapTerrainFound found = write_map_terrain(r);
   EXPECT_NEAR(io::read_grid(folder / "out/dtm.tif").lattice.cell, 5.0, 1e-9);
   EXPECT_NEAR(found.cell, r.cell, 1e-12);
+  const std::string json = test::read_bytes(folder / "out/map_terrain.json");
+  for (const char* part : {"\"units\": \"m\"", "\"dtm_height_unit\": \"ftUS\""}) EXPECT_NE(json.find(part), std::string::npos) << json;
   EXPECT_NEAR(found.interval, 2.0 * survey_foot, 1e-9);
   EXPECT_NEAR(io::height_unit_of(folder / "out/dtm.tif"), survey_foot, 1e-9);
   EXPECT_NE(map_terrain_text(found).find("interval 0.609601 m"), std::string::npos) << map_terrain_text(found);
-  EXPECT_NE(map_terrain_text(found).find("heights of the model in US survey foot"), std::string::npos);
+  EXPECT_NE(map_terrain_text(found).find("heights of the model in ftUS; lengths and errors in m"), std::string::npos);
 }
 
 TEST(MapTerrainFiles, AUnitOfHeightsThatIsNotStatedIsAskedForWhereTheMapIsInFeet) {
