@@ -56,19 +56,23 @@ std::string_view stated_heights(std::string_view description) {
   return description.substr(comma + 2);
 }
 
-std::optional<double> stated_height_unit(const std::filesystem::path& file) {
-  const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
-  for (OGRLayer* layer : set->GetLayers()) {
+std::optional<double> height_unit_in(GDALDataset& set, const std::filesystem::path& file) {
+  for (OGRLayer* layer : set.GetLayers()) {
     if (const auto unit = unit_of_crs(layer->GetSpatialRef())) return unit;
     const char* about = layer->GetMetadataItem("DESCRIPTION");
     if (const auto unit = unit_between(about ? about : "", heights_in, ',')) return unit;
   }
-  const std::string driver = set->GetDriverName();
+  const std::string driver = set.GetDriverName();
   if (driver == "DXF") return unit_between(beginning_of(file), ", elevations in ", ',');
   if (driver == "GeoJSON") return unit_between(beginning_of(file), "\"height_unit\": \"", '"');
   return std::nullopt;
+}
+
+std::optional<double> stated_height_unit(const std::filesystem::path& file) {
+  const GdalMessages messages;
+  const Dataset set = open_vector(file);
+  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  return height_unit_in(*set, file);
 }
 
 }  // namespace swath::io

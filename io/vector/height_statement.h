@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+class GDALDataset;
+
 namespace swath::io {
 
 struct CrsFacts;
@@ -20,5 +22,7 @@ std::string_view stated_heights(std::string_view description);
 /// a layer's description in a GeoPackage, the comments at the start of a DXF, the member `swath` of a GeoJSON. Nothing where none does.
 /// Throws core::Error where the file cannot be read.
 std::optional<double> stated_height_unit(const std::filesystem::path& file);
+/// The same of a file that is open under that name.
+std::optional<double> height_unit_in(GDALDataset& set, const std::filesystem::path& file);
 
 }  // namespace swath::io

@@ -39,12 +39,9 @@ void add_points(const OGRGeometry& shape, double height, SpotFile& to) {
 
 }  // namespace
 
-SpotFile read_spots(const std::filesystem::path& file, const std::string& field) {
-  const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+SpotFile spots_in(GDALDataset& set, const std::string& field) {
   SpotFile out;
-  for (OGRLayer* layer : set->GetLayers()) {
+  for (OGRLayer* layer : set.GetLayers()) {
     if (contour_labels == layer->GetName()) continue;
     if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) out.crs_wkt = wkt2(*srs);
     const int at = height_field(*layer->GetLayerDefn(), field);
@@ -54,6 +51,14 @@ SpotFile read_spots(const std::filesystem::path& file, const std::string& field)
       add_points(*shape, number_of(*feature, at).value_or(std::nan("")), out);
     }
   }
+  return out;
+}
+
+SpotFile read_spots(const std::filesystem::path& file, const std::string& field) {
+  const GdalMessages messages;
+  const Dataset set = open_vector(file);
+  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  SpotFile out = spots_in(*set, field);
   messages.check("cannot read the vector file", file);
   return out;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+class GDALDataset;
+
 namespace swath::io {
 
 struct SpotFile {
@@ -19,5 +21,7 @@ struct SpotFile {
 /// `contour` or `z`; else the point's own z. Texts of a DXF file and the points of a layer `labels` are no spot heights. Throws
 /// core::Error.
 SpotFile read_spots(const std::filesystem::path& file, const std::string& field = {});
+/// The same of a file that is open; GDAL's messages are left to the caller.
+SpotFile spots_in(GDALDataset& set, const std::string& field);
 
 }  // namespace swath::io

@@ -138,12 +138,9 @@ std::string ContourFiles::close() {
   return left_out_;
 }
 
-VectorLines read_lines(const std::filesystem::path& file, const std::string& field) {
-  const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+VectorLines lines_in(GDALDataset& set, const std::string& field) {
   VectorLines out;
-  for (OGRLayer* layer : set->GetLayers()) {
+  for (OGRLayer* layer : set.GetLayers()) {
     if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) out.crs_wkt = wkt2(*srs);
     const Fields fields = fields_of(*layer->GetLayerDefn(), field);
     for (const auto& feature : *layer) {
@@ -160,6 +157,14 @@ VectorLines read_lines(const std::filesystem::path& file, const std::string& fie
       add_shape(*shape, like, out.lines);
     }
   }
+  return out;
+}
+
+VectorLines read_lines(const std::filesystem::path& file, const std::string& field) {
+  const GdalMessages messages;
+  const Dataset set = open_vector(file);
+  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  VectorLines out = lines_in(*set, field);
   messages.check("cannot read the vector file", file);
   return out;
 }

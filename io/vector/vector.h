@@ -13,6 +13,8 @@
 
 #include "core/contour_line.h"
 
+class GDALDataset;
+
 namespace swath::io {
 
 class ContourSink;
@@ -93,5 +95,7 @@ struct VectorLines {
 /// Reads all lines (also parts of multi-lines and rings of polygons, curves as chords) of all layers. `field`: the one with the height, in
 /// place of those named above. Throws core::Error.
 VectorLines read_lines(const std::filesystem::path& file, const std::string& field = {});
+/// The same of a file that is open; GDAL's messages are left to the caller.
+VectorLines lines_in(GDALDataset& set, const std::string& field);
 
 }  // namespace swath::io

@@ -10,7 +10,7 @@
 #include "io/raster/geotiff.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
-#include "io/vector/height_statement.h"
+#include "io/vector/vector_map.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/line_file.h"
 
@@ -21,28 +21,25 @@ namespace fs = std::filesystem;
 
 struct MapFile {
   fs::path name;
-  std::optional<double> unit;  ///< metres of one unit of its heights, where it states it
-  io::VectorLines lines;
-  io::SpotFile spots;
+  io::VectorMap map;
 };
 
 std::vector<MapFile> read_files(const MapTerrainRequest& r) {
   std::vector<MapFile> out;
-  for (const fs::path& file : r.files)
-    out.push_back({file, io::stated_height_unit(file), io::read_lines(file, r.field), io::read_spots(file, r.field)});
+  for (const fs::path& file : r.files) out.push_back({file, io::read_map(file, r.field)});
   return out;
 }
 
 core::Crs crs_of(const MapTerrainRequest& r, const std::vector<MapFile>& files) {
   if (!r.crs.empty()) return core::Crs(r.crs);
   for (const MapFile& file : files)
-    if (!file.spots.crs_wkt.empty()) return core::Crs(file.spots.crs_wkt);
+    if (!file.map.spots.crs_wkt.empty()) return core::Crs(file.map.spots.crs_wkt);
   return {};
 }
 
 /// Metres of one unit of a file's heights: what it states, else the option, else what the model's CRS leaves no doubt of.
 double unit_of(const MapFile& file, const MapTerrainRequest& r, const core::Crs& crs) {
-  if (file.unit) return *file.unit;
+  if (file.map.height_unit) return *file.map.height_unit;
   if (r.height_unit) return *r.height_unit;
   if (crs.has_height_unit()) return crs.vertical_metres_per_unit();
   if (core::is_same_unit(crs.metres_per_unit(), 1.0)) return 1.0;
@@ -57,11 +54,11 @@ double settle_heights(std::vector<MapFile>& files, const MapTerrainRequest& r, c
   const double model = crs.has_height_unit() ? crs.vertical_metres_per_unit() : unit_of(files.front(), r, crs);
   for (MapFile& file : files) {
     const double unit = unit_of(file, r, crs), scale = core::is_same_unit(unit, model) ? 1.0 : unit / model;
-    for (io::VectorLine& line : file.lines.lines) {
+    for (io::VectorLine& line : file.map.lines.lines) {
       line.height *= scale;
       for (double& z : line.z) z *= scale;
     }
-    for (double& z : file.spots.z) z *= scale;
+    for (double& z : file.map.spots.z) z *= scale;
   }
   return model;
 }
@@ -93,8 +90,8 @@ terrain::MapContent content_of(std::vector<MapFile> files, const core::Crs& crs,
   terrain::MapContent out;
   for (MapFile& file : files) {
     size_t number = 0;
-    move_into(crs, file.name, file.lines);
-    for (const io::VectorLine& line : file.lines.lines) {
+    move_into(crs, file.name, file.map.lines);
+    for (const io::VectorLine& line : file.map.lines.lines) {
       auto one = map_line(line, file.name.string() + ": layer " + line.layer + ", line " + std::to_string(++number));
       if (!one) {
         ++found.without_height;
@@ -103,8 +100,8 @@ terrain::MapContent content_of(std::vector<MapFile> files, const core::Crs& crs,
       ++(one->contour ? found.contours : found.breaklines);
       out.lines.push_back(std::move(*one));
     }
-    move_into(crs, file.name, file.spots);
-    const io::SpotFile& spots = file.spots;
+    move_into(crs, file.name, file.map.spots);
+    const io::SpotFile& spots = file.map.spots;
     found.without_height += spots.without_height;
     for (size_t k = 0; k < spots.x.size(); ++k)
       if (is_place(spots.x[k], spots.y[k], spots.z[k])) out.spots.emplace_back(spots.x[k], spots.y[k], spots.z[k]);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/vector/vector_map.h"
+
+#include <gdal_priv.h>
+
+#include "io/vector/gdal_door.h"
+#include "io/vector/height_statement.h"
+
+namespace swath::io {
+
+VectorMap read_map(const std::filesystem::path& file, const std::string& field) {
+  const GdalMessages messages;
+  const Dataset set = open_vector(file);
+  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  VectorMap out{height_unit_in(*set, file), lines_in(*set, field), spots_in(*set, field)};
+  messages.check("cannot read the vector file", file);
+  return out;
+}
+
+}  // namespace swath::io
