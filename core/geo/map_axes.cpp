@@ -28,17 +28,25 @@ std::string heights_part(const Crs& crs) {
   return crs.vertical_epsg() != 0 ? "+" + std::to_string(crs.vertical_epsg()) : "";
 }
 
-/// "EPSG:32734", UTM in the middle of the area of use, or what the choice is.
-std::string utm_for(const Crs& crs) {
+/// The middle of the area of use of a map; that of a geographic CRS may be the whole globe.
+std::optional<Place> middle_of(const Crs& map) {
   double west = 0, south = 0, east = 0, north = 0;
+  if (map.empty() || !map.is_projected()) return std::nullopt;
   // WKT1 holds a code and no area.
-  if (!crs.area_of_use(west, south, east, north) &&
-      (crs.epsg() == 0 || !Crs("EPSG:" + std::to_string(crs.epsg())).area_of_use(west, south, east, north)))
-    return "EPSG:326xx (north) or EPSG:327xx (south)";
-  return utm_zone({0.5 * (west + (east < west ? east + 360.0 : east)), 0.5 * (south + north)}, crs) + heights_part(crs);
+  if (!map.area_of_use(west, south, east, north) &&
+      (map.epsg() == 0 || !Crs("EPSG:" + std::to_string(map.epsg())).area_of_use(west, south, east, north)))
+    return std::nullopt;
+  return Place{0.5 * (west + (east < west ? east + 360.0 : east)), 0.5 * (south + north)};
 }
 
 }  // namespace
+
+std::string utm_for(const Crs& crs, const std::optional<Eigen::Vector2d>& at) {
+  std::optional<Place> place;
+  if (at) place = crs.is_geographic() ? Place{at->x(), at->y()} : place_on_earth(crs, *at);
+  if (!place) place = middle_of(crs);
+  return place ? utm_zone(*place, crs) + heights_part(crs) : "EPSG:326xx (north) or EPSG:327xx (south)";
+}
 
 std::string turned_axes(const Crs& crs) {
   const ProjContext context = new_proj_context();

@@ -2,6 +2,8 @@
 // Which way the coordinates of a map grow.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "core/geo/crs.h"
@@ -15,6 +17,10 @@ std::string turned_axes(const Crs& crs);
 
 /// The same projection with easting and northing, heights as the CRS has them ("EPSG:5514+5705"); empty where EPSG has none.
 std::string easting_northing_form(const Crs& crs);
+
+/// The UTM zone to use in place of `crs`, with its heights ("EPSG:32734", "EPSG:25832+5783"): that of `at`, a place in its coordinates
+/// (degrees where it is geographic), else of the middle of the map's area of use; where neither is known the form of the codes.
+std::string utm_for(const Crs& crs, const std::optional<Eigen::Vector2d>& at = {});
 
 /// Courses, aspects, the light of a relief and the north arrow of a picture all take x to be east and y north. Throws core::usage_error
 /// for a CRS in which they are not; the hint names a CRS to use. `where`: file and key, or the option.

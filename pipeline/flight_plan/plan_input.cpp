@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/area.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
 #include "core/geo/map_axes.h"
-#include "core/geo/map_scale.h"
 #include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -49,12 +47,16 @@ planning::PlanOptions options_of(const PlanRequest& request, core::Value& simula
   return options;
 }
 
-/// The UTM zone of the first corner; of an area that is a file the form of its code.
-std::string utm_for(const planning::PlanOptions& o, const core::Crs& crs) {
-  std::optional<core::Place> place;
-  if (!o.corners.empty() && crs.is_projected())
-    place = core::place_on_earth(crs, Vector2d(o.corners[0].east.value, o.corners[0].north.value) / crs.metres_per_unit());
-  return place ? core::utm_zone(*place, crs) : "EPSG:326xx";
+/// The UTM zone of the area's first corner; corners are in metres, also of a map in feet.
+std::string utm_of_area(const planning::PlanOptions& o, const core::Crs& crs) {
+  if (o.area.empty()) {
+    if (o.corners.empty() || !crs.is_projected()) return core::utm_for(crs);
+    return core::utm_for(crs, Vector2d(o.corners[0].east.value, o.corners[0].north.value) / crs.metres_per_unit());
+  }
+  const io::VectorLines area = io::read_lines(o.area);
+  const core::Crs own = area.crs_wkt.empty() ? crs : core::Crs(area.crs_wkt).horizontal();
+  if (area.lines.empty() || area.lines[0].x.empty()) return core::utm_for(own);
+  return core::utm_for(own, Vector2d(area.lines[0].x[0], area.lines[0].y[0]));
 }
 
 core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
@@ -69,8 +71,8 @@ core::Crs crs_of(const planning::PlanOptions& o, const fs::path& config) {
   core::require_easting_northing(crs, config.string());
   if (!crs.is_projected() || crs.metres_per_unit() != 1.0)
     throw core::usage_error("a plan needs a projected CRS in metres, " + crs.name() + " is not one", config.string(),
-                            "state a UTM zone: crs = \"" + utm_for(o, crs) +
-                                "\". A file of the area is transformed; corners and a terrain model (gdalwarp -t_srs) must be in it");
+                            "state the UTM zone as crs: " + utm_of_area(o, crs) +
+                                ". A file of the area is transformed; corners and a terrain model (gdalwarp -t_srs) must be in it");
   return crs;
 }
 

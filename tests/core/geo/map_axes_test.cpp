@@ -62,5 +62,13 @@ TEST(MapAxes, RefusalNamesAMapToUse) {
             "use such a CRS, for example the UTM zone EPSG:326xx (north) or EPSG:327xx (south); transform coordinates that exist");
 }
 
+TEST(MapAxes, UtmZoneOfAPlaceOrOfTheMiddleOfAMap) {
+  EXPECT_EQ(utm_for(Crs("EPSG:4326"), Eigen::Vector2d(10.35, 47.85)), "EPSG:32632");
+  EXPECT_EQ(utm_for(Crs("EPSG:4258"), Eigen::Vector2d(10.35, 47.85)), "EPSG:25832");
+  EXPECT_EQ(utm_for(Crs("EPSG:2263+6360"), Eigen::Vector2d(983000, 210000)), "EPSG:32618+6360");  // New York, ft
+  EXPECT_EQ(utm_for(Crs("EPSG:2263")), "EPSG:32618");
+  EXPECT_EQ(utm_for(Crs("EPSG:4326")), "EPSG:326xx (north) or EPSG:327xx (south)");  // the whole globe has no zone
+}
+
 }  // namespace
 }  // namespace swath::core
