@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "core/distributions.h"
+#include "core/geo/undulation.h"
 #include "core/statistics.h"
 
 namespace swath::quality {
@@ -74,8 +75,8 @@ std::string foreign_unit(const std::vector<CheckMark>& marks, const std::vector<
 
 /// What to look for where all lines lie `common` m above the check points.
 std::string advice_on(double common, double undulation) {
-  constexpr double like_geoid = 2.5, least = 5.0;  // m: of other geoids beside EGM96; below it other causes are as likely
-  if (!(std::abs(undulation) > least) || std::abs(std::abs(common) - std::abs(undulation)) > like_geoid)
+  constexpr double least = 5.0;  // m: below it other causes are as likely
+  if (!(std::abs(undulation) > least) || std::abs(std::abs(common) - std::abs(undulation)) > core::like_geoid)
     return "compare geoid, height system and antenna heights";
   char out[500];
   const bool is_by_undulation = common * undulation < 0.0;  // heights above the geoid are less by the undulation

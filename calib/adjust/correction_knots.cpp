@@ -22,9 +22,7 @@ constexpr double least_attitude = 1e-9;  // rad
 // Independent part added to each unknown's variance so that nearly equal ones can be distinguished by the arithmetic: a thousandth of its
 // sigma.
 constexpr double own_share = 1e-6;
-// Unknowns that may all be correlated with all. More are chained line by line, where that makes knots narrower by this.
-constexpr int max_together = 1500;
-constexpr double narrower = 1.5;
+constexpr double narrower = 1.5;  // by which lines are chained
 
 double least_variance(bool position) {
   const double least = position ? least_position : least_attitude;

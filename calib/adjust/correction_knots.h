@@ -22,11 +22,15 @@ ErrorCovariance stated_covariance(const CorrectionOptions& options);
 /// North, east, down (m), roll, pitch, heading (rad).
 using Correction = Eigen::Matrix<double, 6, 1>;
 
+/// Unknowns that may all be correlated with all: the work grows with the cube of their number. More are chained line by line, where that
+/// makes knots narrower.
+constexpr int max_together = 1500;
+
 /// The unknowns of all lines in one vector: line by line the position's knots (north, east, down each), then the attitude's (roll, pitch,
 /// heading each); after all of them, where the lines are chained, the lines' trends, which no observation touches.
 ///
-/// Up to 1500 unknowns have the covariance as given, all with all. Of more, where all parts are splines, each line's knots are a Markov
-/// chain about its trend (calib/adjust/correction_chain.h), and only the trends are correlated from line to line.
+/// Up to `max_together` unknowns have the covariance as given, all with all. Of more, where all parts are splines, each line's knots are a
+/// Markov chain about its trend (calib/adjust/correction_chain.h), and only the trends are correlated from line to line.
 class CorrectionKnots {
  public:
   /// `latency` is added to the lines' times. The prior of shifts and drifts is that of the least-squares fit of such a curve to errors at

@@ -6,6 +6,7 @@
 
 #include "calib/words.h"
 #include "core/geo/geodesy.h"
+#include "core/geo/undulation.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double foot_length = 0.3048, like_feet = 0.03;  // of the ratio
 // Geoids lie up to 107 m below and 86 m above the ellipsoid; where they are near to it the difference has other causes as well.
-constexpr double highest_geoid = 110.0, lowest_geoid = 15.0, like_geoid = 2.5;
+constexpr double highest_geoid = 110.0, lowest_geoid = 15.0;
 constexpr double one_height = 0.5;  // m, and a hundredth of the difference: spread about it
 constexpr double relief = 0.1;      // of the difference
 
@@ -74,7 +75,7 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
   if (c.compared < fewest_control_points) return std::nullopt;
   const double size = std::abs(c.median);
   const bool known = std::isfinite(undulation), one = c.spread < one_height + 0.01 * size;
-  const bool is_known = known && one && std::abs(size - std::abs(undulation)) < like_geoid && size > 2 * like_geoid;
+  const bool is_known = known && one && std::abs(size - std::abs(undulation)) < core::like_geoid && size > 2 * core::like_geoid;
   if (!is_known && size > 5) {
     const auto in_feet = [](double metres, double feet) { return feet != 0 && std::abs(metres / feet / foot_length - 1) < like_feet; };
     // Heights of control in feet are off by more where the ground is higher.

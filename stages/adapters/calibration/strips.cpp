@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/adjust/correction_knots.h"
 #include "calib/adjust/line_agreement.h"
 #include "calib/adjust/prepared_flight.h"
 #include "calib/adjust/strips.h"
@@ -249,7 +250,7 @@ Corrections correct_strips(const Context& context, const trajectory::Trajectory&
 
 double strips_memory(const Context& c, const StripStageOptions& o) {
   constexpr double bytes_per_unknown = 0.133e6;  // factor, inverse and observations (docs/performance.md, 20 and 50 lines)
-  constexpr double components_of_a_spline = 3.0, fewest_chained = 1500.0;  // unknowns: fewer take little
+  constexpr double components_of_a_spline = 3.0;
   const calib::CorrectionOptions& corrections = o.adjust.corrections;
   const int splines = (corrections.position == calib::CorrectionForm::spline) + (corrections.attitude == calib::CorrectionForm::spline);
   double time = 0.0;
@@ -257,7 +258,8 @@ double strips_memory(const Context& c, const StripStageOptions& o) {
     if (s.last_time > s.first_time) time += s.last_time - s.first_time;
   const double unknowns =
       std::min(components_of_a_spline * splines * time / corrections.spacing.value, static_cast<double>(corrections.most));
-  return o.when == AdjustWhen::always && unknowns > fewest_chained ? bytes_per_unknown * unknowns : 0.0;
+  // Fewer unknowns take little.
+  return o.when == AdjustWhen::always && unknowns > calib::max_together ? bytes_per_unknown * unknowns : 0.0;
 }
 
 }  // namespace
