@@ -291,8 +291,8 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);
       hold_sigma(raw.sigma_v, "height", raw.place);
-      ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v,
-                     f.use,    raw.place,  raw.cover,        f.kind,      !raw.name.empty()};
+      ControlPoint p{raw.name,  raw.target, Vector3d::Zero(), raw.sigma_h,       raw.sigma_v,  f.use,
+                     raw.place, raw.cover,  f.kind,           !raw.name.empty(), crs.heights()};
       try {
         p.ecef = to_ecef({raw.at.x(), raw.at.y(), raw.at.z() * height_unit});
       } catch (const core::Error&) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geo/crs.h"
 #include "core/report.h"
 #include "io/survey/control_file.h"
 
@@ -24,7 +25,8 @@ struct ControlPoint {
   std::string place;    ///< "file:line"
   std::string cover{};  ///< what covers the ground; empty: not stated
   ControlKind kind = ControlKind::xyz;
-  bool is_named = true;  ///< false: its name is a number by its place, or of the target's corner
+  bool is_named = true;                            ///< false: its name is a number by its place, or of the target's corner
+  core::Heights heights = core::Heights::unknown;  ///< what its file's height counted from, by its CRS
 };
 
 /// All control of a survey that has three coordinates, in the files' order; corners of one target adjacent and in their order. Throws Error

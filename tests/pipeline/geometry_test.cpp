@@ -9,6 +9,9 @@
 
 #include "core/error.h"
 #include "io/text/output_file.h"
+#include "io/text/text_table.h"
+#include "io/text/value_file.h"
+#include "io/vector/point_layer.h"
 #include "pipeline/run.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"
@@ -165,6 +168,39 @@ TEST(PoorGnss, ErrorsThatTheSigmasAllowAreNotAMistake) {
   const core::Value& geometry = *found.report.find("geometry");
   EXPECT_EQ(geometry.find("verdict")->as_text(), "consistent");
   EXPECT_TRUE(geometry.find("named")->items().empty());
+}
+
+TEST(GroundControl, HeightsOfAGeoPackageCountFromWhatItsOwnCrsSays) {
+  const test::TemporaryFolder folder;
+  simulate::Options o;
+  o.world.length.value = 200;
+  o.world.width.value = 200;
+  o.flight.lines = 3;
+  o.flight.cross_lines = 1;
+  o.control.points = 8;
+  simulate::run(o, folder.path());
+  // Ellipsoidal heights, as the simulation has them, in a file that states EGM96.
+  const io::TextTable table(folder / "check.csv");
+  std::vector<io::NamedPoint> points;
+  for (size_t r = 0; r < table.rows(); ++r) {
+    const auto at = [&](const char* column) { return table.number(r, table.column(column)); };
+    points.push_back({table.text(r, table.column("name")), "", {at("x"), at("y"), at("z")}, {}});
+  }
+  io::write_point_layer(folder / "check.gpkg", "check", "EPSG:32632+5773", {}, points);
+  std::string survey = test::read_bytes(folder / "survey.toml");
+  survey.replace(survey.find("check.csv"), 9, "check.gpkg");
+  io::write_text_file(folder / "survey.toml", survey);
+  std::string gate = test::read_bytes(test::source_folder() / "configs/survey.toml");
+  io::write_text_file(folder / "gate.toml", gate.substr(0, gate.find("[[stage]]", gate.find("quality.geometry"))));
+  Request r;
+  r.config = folder / "gate.toml";
+  r.survey = folder / "survey.toml";
+  r.output = folder / "out";
+  r.threads = 2;
+  Plan plan = make_plan(r);
+  Progress progress(Voice::quiet);
+  const std::string report = io::to_json(run(plan, progress, "test").report);
+  EXPECT_NE(report.find("with the control's heights ellipsoidal, or the trajectory's above the geoid"), std::string::npos) << report;
 }
 
 TEST_F(Geometry, AUsualMistakeIsNotHiddenByAnAdjustment) {

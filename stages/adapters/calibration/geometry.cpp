@@ -49,25 +49,23 @@ double convergence_of(const Context& context, const core::TrajectoryData& d) {
   return -std::atan2(way.x(), way.y());
 }
 
-/// Do the heights of control count from a geoid or level, by its CRS or the survey's?
-bool is_over_geoid(const io::Survey& survey) try {
-  return std::any_of(survey.control.begin(), survey.control.end(), [&](const io::ControlFile& f) {
-    const std::string& stated = f.crs.empty() ? survey.crs : f.crs;
-    return !stated.empty() && core::Crs(stated).heights() == core::Heights::vertical;
-  });
-} catch (const core::Error&) {  // counted where control is read
-  return false;
-}
+/// Points on the ground, and whether heights of control count from a geoid or level.
+struct GroundControl {
+  std::vector<calib::SurveyedPlace> points;
+  bool over_geoid = false;
+};
 
-/// Points on the ground. The smooth cell beside a roof's centre may lie on the ground below.
-std::vector<calib::SurveyedPlace> control_of(const io::Survey& survey, const core::TrajectoryData& d, core::Tally& tally) {
-  std::vector<calib::SurveyedPlace> out;
+/// The smooth cell beside a roof's centre may lie on the ground below: roofs are left out.
+GroundControl control_of(const io::Survey& survey, const core::TrajectoryData& d, core::Tally& tally) {
+  GroundControl out;
   try {
     core::Tally of_others;  // stages that use control count what is wrong with its planes
     const size_t i = d.size() / 2;
     const trajectory::LocalFrame frame = trajectory::local_frame(core::ecef_of({d.latitude[i], d.longitude[i], d.height[i]}));
-    for (const calib::SurveyedTarget& t : calib::surveyed_targets(io::read_control(survey, of_others), frame, of_others))
-      if (t.is_point) out.push_back({frame.to_ecef(t.centre), t.control.empty() ? 0.0 : t.control.front().sigma, t.sigma_h});
+    const std::vector<io::ControlPoint> read = io::read_control(survey, of_others);
+    for (const io::ControlPoint& p : read) out.over_geoid = out.over_geoid || p.heights == core::Heights::vertical;
+    for (const calib::SurveyedTarget& t : calib::surveyed_targets(read, frame, of_others))
+      if (t.is_point) out.points.push_back({frame.to_ecef(t.centre), t.control.empty() ? 0.0 : t.control.front().sigma, t.sigma_h});
   } catch (const core::SystemError&) {
     throw;
   } catch (const core::Error& e) {
@@ -101,8 +99,9 @@ GeometryFindings judge_flight(const Context& context, const trajectory::Trajecto
   in.convergence = convergence_of(context, trajectory.data());
   // What is computed from GNSS fixes here is the IMU's, or the antenna's by its lever arm.
   for (size_t k = 0; k < 3 && fixes == nullptr; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
-  in.control = control_of(context.survey, trajectory.data(), tally);
-  in.control_over_geoid = is_over_geoid(context.survey);
+  GroundControl control = control_of(context.survey, trajectory.data(), tally);
+  in.control = std::move(control.points);
+  in.control_over_geoid = control.over_geoid;
   in.undulation = [&d = trajectory.data()] {
     const size_t middle = d.size() / 2;
     return core::undulation({core::to_degrees(d.longitude[middle]), core::to_degrees(d.latitude[middle])});

@@ -239,6 +239,16 @@ class GeoPackageControl : public Control {
   }
 };
 
+TEST_F(GeoPackageControl, HeightsCountFromWhatTheFilesOwnCrsSays) {
+  const std::vector<Shape> point{{"POINT Z (500200 5300210 470)", "p1", "", 0}};
+  make("EPSG:32632+5773", point);  // EGM96
+  EXPECT_EQ(read_control(survey_, tally_).at(0).heights, core::Heights::vertical);
+  make(utm, point);
+  EXPECT_EQ(read_control(survey_, tally_).at(0).heights, core::Heights::unknown);
+  file().crs = "EPSG:32632+ellipsoidal";
+  EXPECT_EQ(read_control(survey_, tally_).at(0).heights, core::Heights::ellipsoidal);
+}
+
 constexpr const char* hall = "POLYGON Z ((500100 5300200 480,500130 5300200 480,500130 5300220 484,500100 5300220 484,500100 5300200 480))";
 
 TEST_F(GeoPackageControl, PointsAndPolygons) {
