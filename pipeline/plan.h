@@ -92,9 +92,6 @@ bool makes_points(const Plan& plan);
 /// Throws core::Error (usage) where the CRS is no map projection.
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey);
 
-/// Sets one option of a table of options from "key=value" or "table.key=value", as --set does. Throws core::Error (usage).
-void set_option(core::Value& table, const std::string& set);
-
 struct ExplainedStage {
   std::string_view type;
   core::Value options;

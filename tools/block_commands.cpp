@@ -18,6 +18,7 @@
 #include "io/text/text_table.h"
 #include "io/text/value_file.h"
 #include "pipeline/input_guard.h"
+#include "pipeline/jobs/set_options.h"
 #include "tools/command.h"
 
 namespace swath::tools {

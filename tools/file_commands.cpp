@@ -6,6 +6,7 @@
 #include "io/survey/info.h"
 #include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
+#include "pipeline/jobs/set_options.h"
 #include "simulate/files/earlier_survey.h"
 #include "simulate/simulate.h"
 #include "tools/command.h"

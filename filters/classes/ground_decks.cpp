@@ -15,30 +15,13 @@
 #include "core/floor_div.h"
 #include "filters/bins.h"
 #include "filters/classes/deck_heights.h"
+#include "filters/classes/deck_profile.h"
 
 namespace swath::filters {
 namespace {
 
 constexpr int deck_directions = 16;
-constexpr double deck_grade = 0.15, deck_roughness = 0.2;  // rise / run; m: from cell to cell of a deck
-constexpr double across = 0.06, uneven = 0.3;              // rise / run and m: across a deck, from any of its cells; banks fall by more
-constexpr double fall_beside = 1.0;                        // m beside a deck
-constexpr double sheer = 0.75;                    // rise / run from anywhere in a cell to anywhere in the next: banks fall less steeply
-constexpr double wide_open = 5.0, hidden = 12.0;  // m without returns beside a deck, at least; looked at, too few for voids of 3 m cells
-constexpr int open_cells = 5;                     // at least so many cells of it
-constexpr double banks = 40.0;                    // m from the void beside a deck to returns on both sides of it
-constexpr double parting = 1.5, on = 20.0;  // m by which the sides of water part per metre, at most; m on, where it still has both or ends
-constexpr double widest = 30.0, narrowest = 2.0;
-constexpr double shortest_deck = 3.0, bank_length = 5.0;  // m: of deck; of ground beyond its ends
-constexpr double finest = 1.5;             // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
-constexpr double gap = 3.0, stairs = 2.0;  // m without ground on it: a vehicle; m down to the ground at one of its ends
-constexpr int edge_cells = 3;              // before a void, of the surface
-constexpr float edge_fall = 0.2f;          // m down from there: a bank
-constexpr int bare = 2;                    // cells without return between a deck and what is below
-constexpr double wedge = 1.2, oblique = 1.15, share_open = 0.7;  // of the least width of the deck; of all axes; of its length, open
-constexpr int growth = 5, fewest_beside = 2, around = 6;         // cells; of 8 cells around one, of a deck
-constexpr float near_deck = 0.5f, near_rail = 1.3f;              // m above or below: kerbs; above at the edges: railings and parapets
-constexpr double rail_reach = 1.0, void_at_end = 2.0;  // m from the deck's cells, over what is beside them; m of void beside its end
+using namespace deck_profile;
 
 constexpr double closed = std::numeric_limits<double>::infinity();
 
@@ -191,8 +174,8 @@ class Cells {
     };
     const int there = apart(last);
     const CellIndex end = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(last)];
-    const int ahead = to_returns(i + end.i, j + end.j, direction), far = std::min(last + in_cells(on), reach_);
-    if (there == 0 || ((ahead == 0 || ahead > in_cells(on)) && apart(far) == 0)) return false;
+    const int ahead = to_returns(i + end.i, j + end.j, direction), far = std::min(last + in_cells(water_goes_on), reach_);
+    if (there == 0 || ((ahead == 0 || ahead > in_cells(water_goes_on)) && apart(far) == 0)) return false;
     for (int k = first; 2 * k <= first + last; ++k)  // railings may stand in the first
       if (there <= apart(k) + parting * (last - k)) return true;
     return false;
@@ -372,7 +355,7 @@ bool is_rail(const Cells& cells, const std::vector<std::uint8_t>& deck, const co
 
 double ground_decks_halo(double longest) {
   return Districts::halo() +
-         std::max(std::hypot(longest + bank_length + banks, widest + hidden + on),
+         std::max(std::hypot(longest + bank_length + banks, widest + hidden + water_goes_on),
                   std::hypot(longest + bank_length, widest + hidden + banks)) +
          (growth + 3 + deck_heights_reach) * sample_sides.back();
 }
@@ -390,8 +373,8 @@ std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& wh
     for (size_t p = 0; p < own; ++p) {
       const CellIndex at = cell_of(l, b, p);
       const size_t c = l.at(at.i, at.j);
-      const bool on = deck[c] && std::abs(static_cast<float>(b.z[p]) - cells.top(c)) <= near_deck;
-      out[p] = out[p] || on || is_rail(cells, deck, b, p, at);
+      const bool is_on_deck = deck[c] && std::abs(static_cast<float>(b.z[p]) - cells.top(c)) <= near_deck;
+      out[p] = out[p] || is_on_deck || is_rail(cells, deck, b, p, at);
     }
   }
   return out;

@@ -13,6 +13,7 @@
 #include "io/raster/height_file.h"
 #include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
+#include "pipeline/jobs/set_options.h"
 #include "pipeline/line_file.h"
 #include "pipeline/plan.h"
 
