@@ -27,7 +27,8 @@ constexpr std::string_view box_code = "points.outside_box", damage_code = "work.
                            outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise",
                            events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
                            duplicates_code = "clouds.duplicates", unflown_code = "laser.outside_trajectory",
-                           no_line_code = "laser.outside_lines", calibration_code = "calib.finding", memory_code = "run.memory";
+                           no_line_code = "laser.outside_lines", calibration_code = "calib.finding", memory_code = "run.memory",
+                           undeclared_code = "surface.undeclared";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
 constexpr double warned_duplicates = 1e-3;                     // of the first returns
@@ -181,6 +182,8 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
                    {{"left_out", left_out->as_number(), {}}}});
   if (const Value* said = findings.find("findings"); said && stage.starts_with("calib."))
     for (const Value& sentence : said->items()) out.push_back({std::string(calibration_code), sentence.as_text(), {}});
+  if (const Value* undeclared = findings.find("undeclared"); undeclared && stage == "quality.surface")
+    out.push_back({std::string(undeclared_code), undeclared->as_text(), {}});
   const Value *map_class = findings.find("map_class"), *said = findings.find("findings");
   if (stage == "terrain.contours" && map_class && map_class->as_text() == "none" && said && !said->items().empty())
     out.push_back(

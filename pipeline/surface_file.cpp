@@ -6,8 +6,9 @@
 
 namespace swath::pipeline {
 
-SurfaceFile read_surface(const std::filesystem::path& file, const std::optional<core::Lattice>& window) {
-  SurfaceFile out{io::read_grid(file, window), {}, io::height_unit_of(file)};
+SurfaceFile read_surface(const std::filesystem::path& file, const std::optional<core::Lattice>& window,
+                         const io::OnImpossible& on_impossible) {
+  SurfaceFile out{io::read_grid(file, window, on_impossible), {}, io::height_unit_of(file)};
   const io::RasterInfo info = io::read_raster_info(file);
   if (!info.crs_wkt.empty()) out.crs = core::Crs(info.crs_wkt);
   std::filesystem::path beside = file;

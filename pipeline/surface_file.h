@@ -7,6 +7,7 @@
 
 #include "core/geo/crs.h"
 #include "core/grid.h"
+#include "io/raster/impossible_heights.h"
 
 namespace swath::pipeline {
 
@@ -17,7 +18,8 @@ struct SurfaceFile {
 };
 
 /// Reads the first band (or the band `height`) of a raster, and sigma from its own band or from the file that a run writes beside it:
-/// dtm.vrt has dtm_quality.vrt. `window`: on the raster's lattice. Throws core::Error.
-SurfaceFile read_surface(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt);
+/// dtm.vrt has dtm_quality.vrt. `window`: on the raster's lattice. Heights that cannot be are void (`on_impossible`). Throws core::Error.
+SurfaceFile read_surface(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt,
+                         const io::OnImpossible& on_impossible = {});
 
 }  // namespace swath::pipeline

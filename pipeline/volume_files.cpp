@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
 #include "core/error.h"
@@ -56,12 +57,23 @@ struct Surface {
     if (!info.crs_wkt.empty()) crs = core::Crs(info.crs_wkt);
     vertical_unit = io::height_unit_of(f);
   }
-  /// On the cells of `l`, of any size.
-  core::Grid on(const core::Lattice& l) const {
-    if (l.cell == lattice.cell) return read_surface(file, l).grid;
+  /// On the cells of `l`, of any size; asked for from south to north.
+  core::Grid on(const core::Lattice& l) {
+    if (l.cell == lattice.cell) return read(l);
     const core::Lattice needed = core::lattice_of(lattice.cell, l.west() - lattice.cell, l.south() - lattice.cell, l.east() + lattice.cell,
                                                   l.north() + lattice.cell);
-    return report::resampled(read_surface(file, meet(needed, lattice)).grid, l);
+    return report::resampled(read(meet(needed, lattice)), l);
+  }
+  io::ImpossibleHeights impossible;
+
+ private:
+  double counted_to_ = -std::numeric_limits<double>::infinity();  // y: bands overlap
+  core::Grid read(const core::Lattice& l) {
+    core::Grid out = read_surface(file, l, [&](double, double y, double v) {
+                       if (y > counted_to_) impossible.add(v);
+                     }).grid;
+    counted_to_ = std::max(counted_to_, l.north());
+    return out;
   }
 };
 
@@ -76,7 +88,7 @@ core::Grid level(const core::Lattice& l, double height) {
 }  // namespace
 
 VolumesFound volumes_of(const VolumeRequest& request) {
-  const Surface before(request.before);
+  Surface before(request.before);
   std::optional<Surface> after;
   core::Lattice lattice = before.lattice;
   if (!request.design) {
@@ -105,14 +117,24 @@ VolumesFound volumes_of(const VolumeRequest& request) {
     sum.add(before.on(band), after ? after->on(band) : level(band, *request.design));
   }
   report::Volumes v = sum.result();
+  std::vector<std::string> notes;
+  for (const Surface* s : {&before, after ? &*after : nullptr})
+    if (s && s->impossible.count > 0) notes.push_back(io::sentence_of(s->impossible, s->file));
+  if (after && before.crs.empty() != after->crs.empty()) {
+    const Surface &without = before.crs.empty() ? before : *after, &with = before.crs.empty() ? *after : before;
+    notes.push_back(without.file.filename().string() + " states no CRS: taken to be in that of " + with.file.filename().string() + ", " +
+                    with.crs.name());
+  }
   if (v.cells == 0)
     throw core::Error("the two surfaces have no cell in common" + std::string(polygon.empty() ? "" : " inside the polygon"),
-                      request.before.string());
+                      request.before.string(), notes.empty() ? "" : notes.front());
 
   const double area = metre * metre, volume = area * metre;
   for (double* one : {&v.cut, &v.fill, &v.net, &v.sigma_cut, &v.sigma_fill, &v.sigma_net}) *one *= volume;
   for (double* one : {&v.area, &v.cut_area, &v.fill_area, &v.area_left_out}) *one *= area;
-  return {request, vertices_left_out, !crs.empty(), lattice.cell * metre, v};
+  return {
+      request, vertices_left_out, !crs.empty(), lattice.cell * metre, v, before.impossible.count + (after ? after->impossible.count : 0),
+      notes};
 }
 
 std::string volume_text(const VolumesFound& found) {
@@ -144,6 +166,12 @@ std::string volume_text(const VolumesFound& found) {
     std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", found.request.correlation);
     out += line;
   }
+  return out + note_text(found);
+}
+
+std::string note_text(const VolumesFound& found) {
+  std::string out;
+  for (const std::string& note : found.notes) out += "note: " + note + "\n";
   return out;
 }
 

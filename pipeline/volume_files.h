@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/config/result.h"
 #include "report/volumes.h"
@@ -27,6 +28,8 @@ struct VolumesFound {
   bool has_crs = false;
   double cell = 0.0;
   report::Volumes volumes;  ///< in the units above
+  std::uint64_t impossible_heights = 0;
+  std::vector<std::string> notes = {};  ///< what was taken for granted, sentences
 };
 
 template <class V>
@@ -55,11 +58,15 @@ void describe(const VolumesFound& f, V& v) {
   v.result("cells", s.cells, "Cells compared.");
   v.result("cells_left_out", s.left_out, "Cells where a surface is void.");
   v.result("area_left_out", s.area_left_out, "Their area.");
+  v.result("impossible_heights", f.impossible_heights, core::if_any(), "Heights of the rasters that no ground has, taken as void.");
+  v.result("notes", f.notes, core::plain().only_if(!f.notes.empty()), "What was taken for granted.");
 }
 
 /// Volumes in m3, areas in m2 (units of the file where it states no CRS), with sigma where both models have it. Surfaces on different
 /// lattices are compared on the finer one. Throws core::Error: files that cannot be read, CRSs that differ, no cell in common.
 VolumesFound volumes_of(const VolumeRequest& request);
 std::string volume_text(const VolumesFound& found);
+/// Its notes, a line each.
+std::string note_text(const VolumesFound& found);
 
 }  // namespace swath::pipeline

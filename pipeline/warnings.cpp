@@ -89,6 +89,9 @@ const std::vector<WarningKind>& warning_kinds() {
       {"run.memory", "A stage that holds a whole flight is estimated to need more memory than the default of run.memory leaves.",
        "State what the run may take, such as run.memory = \"4 GB\": any value but the default is enforced, and what does not fit is "
        "refused."},
+      {"surface.undeclared", "The reference of quality.surface holds heights that no ground has, such as -9999: they are taken as void.",
+       "Declare the value in the file: gdal_edit.py -a_nodata -9999 FILE. Where the sentence names a range, look at the unit of its "
+       "heights."},
       {"trajectory.clocks", "The clocks of IMU and GNSS records differ by more than 2 ms and four sigmas.",
        "State the offset that the warning names in survey.toml: as it is, positions are off along the track by speed times offset."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",

@@ -223,7 +223,7 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
   return {cell, std::llround(west), std::llround(south), info.nx, info.ny};
 }
 
-core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window) {
+core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window, const OnImpossible& on_impossible) {
   const GdalMessages messages;
   const Dataset d = open(file, messages);
   const RasterInfo info = info_of(*d);
@@ -261,7 +261,13 @@ core::Grid read_grid(const std::filesystem::path& file, const std::optional<core
             row[static_cast<size_t>(c - col0)]);
     }
   };
+  const auto at_height = static_cast<size_t>(std::max(1, height) - 1);
+  const HeightRule rule(metres_per_height(info.units[at_height], info.crs_wkt), info.nodata[at_height]);
   each(height, [&](size_t k, double v) {
+    if (rule.is_impossible(v)) {
+      if (on_impossible) on_impossible(l.centre_x(static_cast<int>(k % l.nx)), l.centre_y(static_cast<int>(k / l.nx)), v);
+      v = std::numeric_limits<double>::quiet_NaN();
+    }
     grid.height[k] = static_cast<float>(v);
     grid.reason[k] = std::isnan(v) ? core::Void::no_data : core::Void::none;
   });

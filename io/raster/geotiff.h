@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "io/raster/impossible_heights.h"
 
 namespace swath::io {
 
@@ -91,8 +92,9 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
 
 /// Reads a north-up raster (GeoTIFF, AAIGrid .asc, VRT ...) as a Grid: bands that bear our names, or the first band as height.
 /// `window`: a lattice of the same cell; what of it lies outside the file has no data. Throws core::Error as lattice_of, and where the
-/// window's cell is another.
-core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt);
+/// window's cell is another. Heights that cannot be are void; `on_impossible` learns of each, its place in units of the file.
+core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt,
+                     const OnImpossible& on_impossible = {});
 
 /// Memory in which blocks of rasters wait to be written or are kept once read; GDAL's default is 5 % of the machine's.
 void limit_raster_cache(std::int64_t bytes);

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
-#include "core/geo/height_unit.h"
 #include "io/raster/geotiff.h"
 
 namespace swath::io {
@@ -49,18 +49,25 @@ std::optional<PixelWindow> window_in(const Opened& o, const core::Box& box) {
 }
 
 /// Nothing where no pixel of the window has a height.
-std::optional<HeightFile> heights_in(const std::filesystem::path& file, const Opened& o, const PixelWindow& w) {
+std::optional<HeightFile> heights_in(const std::filesystem::path& file, const Opened& o, const PixelWindow& w,
+                                     const OnImpossible& on_impossible = {}) {
   if (static_cast<double>(w.columns) * w.rows > most_pixels)
     throw core::Error("more than 400 million pixels lie in the area", file.string(), "take a coarser model (gdalwarp -tr -r average)");
   const Raster r = read_raster(file, 1, w);
   const double unit = height_unit_of(file), metre = o.metre;
+  const HeightRule rule(unit, o.info.nodata[0]);
+  const auto& t = r.geotransform;
   std::vector<float> heights(r.values.size());
   for (int j = 0; j < r.ny; ++j)
-    for (int i = 0; i < r.nx; ++i)
-      heights[static_cast<size_t>(r.ny - 1 - j) * static_cast<size_t>(r.nx) + static_cast<size_t>(i)] =
-          static_cast<float>(r.values[static_cast<size_t>(j) * static_cast<size_t>(r.nx) + static_cast<size_t>(i)] * unit);
+    for (int i = 0; i < r.nx; ++i) {
+      double v = r.values[static_cast<size_t>(j) * static_cast<size_t>(r.nx) + static_cast<size_t>(i)];
+      if (rule.is_impossible(v)) {
+        if (on_impossible) on_impossible((t[0] + (i + 0.5) * t[1]) * metre, (t[3] + (j + 0.5) * t[5]) * metre, v);
+        v = std::numeric_limits<double>::quiet_NaN();
+      }
+      heights[static_cast<size_t>(r.ny - 1 - j) * static_cast<size_t>(r.nx) + static_cast<size_t>(i)] = static_cast<float>(v * unit);
+    }
   if (std::none_of(heights.begin(), heights.end(), [](float h) { return std::isfinite(h); })) return std::nullopt;
-  const auto& t = r.geotransform;
   HeightFile out{core::HeightField(), o.crs};
   out.field = core::HeightField(
       {(t[0] + 0.5 * t[1]) * metre, (t[3] + (r.ny - 0.5) * t[5]) * metre, t[1] * metre, -t[5] * metre, r.nx, r.ny}, std::move(heights));
@@ -71,9 +78,7 @@ std::optional<HeightFile> heights_in(const std::filesystem::path& file, const Op
 
 double height_unit_of(const std::filesystem::path& file) {
   const RasterInfo info = read_raster_info(file);
-  const std::string unit = info.units.empty() ? "" : info.units[0];
-  if (const auto metres = core::metres_of_unit_name(unit)) return *metres;
-  return info.crs_wkt.empty() ? 1.0 : core::Crs(info.crs_wkt).vertical_metres_per_unit();
+  return metres_per_height(info.units.empty() ? "" : info.units[0], info.crs_wkt);
 }
 
 HeightFile read_heights(const std::filesystem::path& file, const std::optional<core::Box>& within) {
@@ -84,15 +89,18 @@ HeightFile read_heights(const std::filesystem::path& file, const std::optional<c
     if (!part) throw core::Error("the raster lies beside the area", file.string(), "is it of this place, and in the same CRS?");
     w = *part;
   }
-  std::optional<HeightFile> out = heights_in(file, o, w);
-  if (!out) throw core::Error("no pixel of the area has a height", file.string(), "is it of this place?");
+  ImpossibleHeights impossible;
+  std::optional<HeightFile> out = heights_in(file, o, w, [&](double, double, double v) { impossible.add(v); });
+  if (!out)
+    throw core::Error("no pixel of the area has a height", file.string(),
+                      impossible.count ? sentence_of(impossible, file) : "is it of this place?");
   return std::move(*out);
 }
 
-std::optional<HeightFile> find_heights(const std::filesystem::path& file, const core::Box& within) {
+std::optional<HeightFile> find_heights(const std::filesystem::path& file, const core::Box& within, const OnImpossible& on_impossible) {
   const Opened o = opened(file);
   const std::optional<PixelWindow> w = window_in(o, within);
-  return w ? heights_in(file, o, *w) : std::nullopt;
+  return w ? heights_in(file, o, *w, on_impossible) : std::nullopt;
 }
 
 }  // namespace swath::io

@@ -8,6 +8,7 @@
 #include "core/area.h"
 #include "core/geo/crs.h"
 #include "core/height_field.h"
+#include "io/raster/impossible_heights.h"
 
 namespace swath::io {
 
@@ -24,7 +25,8 @@ double height_unit_of(const std::filesystem::path& file);
 /// height.
 HeightFile read_heights(const std::filesystem::path& file, const std::optional<core::Box>& within = std::nullopt);
 
-/// The same, and nothing where nothing of the raster lies in the box or none of its pixels there has a height.
-std::optional<HeightFile> find_heights(const std::filesystem::path& file, const core::Box& within);
+/// The same, and nothing where nothing of the raster lies in the box or none of its pixels there has a height. `on_impossible` learns of
+/// each height that cannot be and is taken as none, its place in map metres.
+std::optional<HeightFile> find_heights(const std::filesystem::path& file, const core::Box& within, const OnImpossible& on_impossible = {});
 
 }  // namespace swath::io

@@ -63,4 +63,9 @@ std::vector<double> gps_times(const TimeTags& tags, const std::string& name, con
 /// Heights, m, between the deepest sea floor and what flies above the highest mountain with a laser.
 constexpr double lowest_height = -12e3, highest_height = 20e3;
 
+inline bool is_a_height(double metres) { return metres >= lowest_height && metres <= highest_height; }
+
+/// A customary value for "no height" in tables and rasters that can state none. Any unit.
+inline bool is_no_height(double value) { return value == -9999.0 || value == -32767.0 || value == -32768.0 || value == -99999.0; }
+
 }  // namespace swath::io

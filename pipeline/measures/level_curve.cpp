@@ -69,7 +69,7 @@ std::string level_text(const LevelCurve& curve) {
     std::snprintf(line, sizeof line, "left out: %.2f%s where the terrain is void\n", curve.last.volumes.area_left_out, metres ? " m2" : "");
     out += line;
   }
-  return out;
+  return out + note_text(curve.last);
 }
 
 }  // namespace swath::pipeline

@@ -34,6 +34,8 @@ void describe(const LevelCurve& c, V& v) {
   v.result("polygon", c.last.request.polygon, core::plain().only_if(!c.last.request.polygon.empty()), "What was counted within.");
   v.result("area", c.last.volumes.area, "Area compared.");
   v.result("area_left_out", c.last.volumes.area_left_out, "Area where the terrain is void.");
+  v.result("impossible_heights", c.last.impossible_heights, core::if_any(), "Heights of the raster that no ground has, taken as void.");
+  v.result("notes", c.last.notes, core::plain().only_if(!c.last.notes.empty()), "What was taken for granted.");
   v.tables("levels", c.rows, "Levels from the lowest up.");
 }
 

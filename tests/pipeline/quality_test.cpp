@@ -216,6 +216,22 @@ TEST_F(Quality, WithoutLevelReferenceAndLimitsThereIsNoVerdict) {
   EXPECT_NEAR(number(findings(o, "quality.swath"), "void_m2"), void_side * void_side, 0.02 * void_side * void_side);
 }
 
+TEST_F(Quality, UndeclaredValuesForNoneInTheReferenceAreVoidAndNamed) {
+  std::string text = "ncols 160\nnrows 220\nxllcorner 499990\nyllcorner 5299990\ncellsize 1\n";
+  for (int j = 219; j >= 0; --j, text += "\n")
+    for (int i = 0; i < 160; ++i) text += (i < 50 ? "-9999" : std::to_string(ground(i - 9.5, j - 9.5) - reference_shift)) + " ";
+  test::write_bytes(*folder_ / "undeclared.asc", text);
+  const test::TemporaryFolder out;
+  for (const char* side : {"100 m", "70 m"}) {
+    const Outcome o = run(out / side, {"surface.reference=undeclared.asc", std::string("run.tile=\"") + side + "\""});
+    EXPECT_LT(number(findings(o, "quality.surface"), "rms_m"), 0.3) << side;
+    const std::string said = findings(o, "quality.surface").find("undeclared")->as_text();
+    EXPECT_TRUE(said.starts_with("undeclared.asc: 7")) << said;  // of 40 columns, less the void
+    EXPECT_NE(said.find(" heights of -9999, which no ground has"), std::string::npos) << said;
+    EXPECT_EQ(std::ranges::count(codes(o), "surface.undeclared"), 1);
+  }
+}
+
 /// Model less reference is 10 cm where line 1 is alone; the reference ends 10 m south of the area and 60 m before its east.
 TEST_F(Quality, ASectionAlongALine) {
   const test::TemporaryFolder out;

@@ -139,6 +139,27 @@ TEST(VolumeFiles, TheBandsOwnUnitCountsWhereTheCrsHasNoVerticalPart) {
   EXPECT_THROW(volumes_of({folder / "a.tif", folder / "c.tif", {}, {}, 1.0}), core::Error);
 }
 
+TEST(VolumeFiles, UndeclaredValuesForNoneAreVoidAndNamed) {
+  const test::TemporaryFolder folder;
+  write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 0.0), "EPSG:32632");
+  // Ten columns of -9999 without a declared value, at the size of cells of the first surface and at half of it.
+  for (const int per : {1, 2}) {
+    std::string text = "ncols " + std::to_string(60 * per) + "\nnrows " + std::to_string(60 * per) +
+                       "\nxllcorner 600000\nyllcorner 5300000\ncellsize " + (per == 1 ? "1" : "0.5") + "\n";
+    const core::Grid g = heap({1.0 / per, 600000 * per, 5300000 * per, 60 * per, 60 * per}, 5.0);
+    for (int j = 60 * per - 1; j >= 0; --j, text += "\n")
+      for (int i = 0; i < 60 * per; ++i) text += (i < 10 * per ? "-9999" : std::to_string(g.height[g.lattice.at(i, j)])) + " ";
+    test::write_bytes(folder / "b.asc", text);
+    const VolumesFound v = volumes_of({folder / "a.tif", folder / "b.asc", {}, {}, 1.0});
+    EXPECT_NEAR(number(v, "fill"), cone, tolerance * cone);
+    EXPECT_EQ(number(v, "cut"), 0.0);
+    EXPECT_EQ(number(v, "impossible_heights"), 600.0 * per * per);
+    EXPECT_NE(volume_text(v).find("heights of -9999, which no ground has, are taken as void"), std::string::npos) << volume_text(v);
+    EXPECT_NE(volume_text(v).find("gdal_edit.py -a_nodata -9999 b.asc"), std::string::npos);
+    EXPECT_NE(volume_text(v).find("b.asc states no CRS: taken to be in that of a.tif, WGS 84 / UTM zone 32N"), std::string::npos);
+  }
+}
+
 TEST(VolumeFiles, WhatDoesNotFitIsAnError) {
   const test::TemporaryFolder folder;
   write(folder.path(), "a", heap({1.0, 600000, 5300000, 20, 20}, 0.0), "EPSG:32632");

@@ -27,6 +27,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
           {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.contours", "findings": {"lines": 0, "left_out": 41}}, {"type": "terrain.contours", "findings": {"lines": 3, "left_out": 4, "map_class": "none", "model_sigma_m": 0.08, "findings": ["o"]}},
+          {"type": "quality.surface", "findings": {"undeclared": "ref.tif: 3 heights of -9999"}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
           "inputs": [{"file": "a.laz", "bytes": 9, "xxh3": "1"}, {"file": "copy.LAZ", "bytes": 9, "xxh3": "1"}],
           "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},

@@ -41,17 +41,18 @@ void describe(SurfaceOptions& o, V& v) {
 }
 
 struct SurfaceCounts {
-  std::uint64_t compared = 0, without_reference = 0;
+  std::uint64_t compared = 0, without_reference = 0, impossible = 0;
 };
 
 template <class V>
 void describe(const SurfaceCounts& r, V& v) {
   v.result("cells compared with the reference", r.compared, core::if_any(), "Cells of the terrain model where both have a height.");
   v.result("cells without a height of the reference", r.without_reference, core::if_any(), "Cells of the terrain model alone.");
+  v.result("impossible heights of the reference", r.impossible, core::if_any(), "Pixels that no ground has, on the model; taken as void.");
 }
 
 struct SurfaceFindings {
-  std::optional<std::string> none{}, heights{};
+  std::optional<std::string> none{}, heights{}, undeclared{};
   std::string reference{};
   std::optional<double> rms{};
   quality::SurfaceComparison found{};
@@ -62,6 +63,7 @@ void describe(const SurfaceFindings& r, V& v) {
   v.result("surface", r.none, core::plain().in_summary(), "Why nothing was compared.");
   v.result("reference", r.reference, core::plain().only_if(!r.reference.empty()), "Name of the reference's file.");
   v.result("heights", r.heights, "What is not known of the height systems.");
+  v.result("undeclared", r.undeclared, core::plain().in_summary(), "Heights of the reference that no ground has, taken as void.");
   v.result("rms_m", r.rms, core::metres().in_summary().limited_by("surface_difference"), "Terrain model less reference, rms.");
   v.tables("classes", r.found.classes, "Terrain model less reference, by slope and cover.");
   v.result("bins_m", r.found.bins, "Middles of 41 bins of all differences; the outermost hold what lies beyond.");
@@ -121,16 +123,23 @@ SurfaceCounts compare_tile(const TileJob& job, const Context& context, const In<
   });
   const core::Lattice own = terrain.lattice(job.box);
   const core::Grid around = terrain.window({own.cell, own.i0 - 1, own.j0 - 1, own.nx + 2, own.ny + 2}), model = terrain.window(own);
-  const std::optional<io::HeightFile> reference = io::find_heights(reference_of(context.survey, o), job.box.grown(2.0 * own.cell));
+  io::ImpossibleHeights impossible;  // where the model has a height: whatever the tiling
+  const std::optional<io::HeightFile> reference =
+      io::find_heights(reference_of(context.survey, o), job.box.grown(2.0 * own.cell), [&](double x, double y, double v) {
+        const std::int64_t i = core::cell_index(x, own.cell) - own.i0, j = core::cell_index(y, own.cell) - own.j0;
+        if (i >= 0 && j >= 0 && i < own.nx && j < own.ny && !std::isnan(model.height[own.at(static_cast<int>(i), static_cast<int>(j))]))
+          impossible.add(v);
+      });
   const auto height = [&](double x, double y) {
     return reference && reference->field.knows(x, y) ? reference->field.height(x, y) : std::numeric_limits<double>::quiet_NaN();
   };
   const quality::SurfaceDifference d =
       quality::compare_surface(model, core::slope(around, own), quality::covers_of(job.block, own), height);
   TileRasters{context, difference_name}.write(job.key, own, {{"terrain model less reference", "m", &d.difference.height}});
-  write_rows(piece_file(job.folder, job.key, "differences"), d.sums, d.bins, std::vector{compared_cells(d.difference)});
+  write_rows(piece_file(job.folder, job.key, "differences"), d.sums, d.bins, std::vector{compared_cells(d.difference)},
+             std::vector{impossible});
   write_grid_tile(job.folder / "map", job.key, d.difference);
-  SurfaceCounts counts{0, d.not_compared};
+  SurfaceCounts counts{0, d.not_compared, impossible.count};
   for (const quality::DifferenceSums& s : d.sums) counts.compared += s.sums.n;
   return counts;
 }
@@ -167,6 +176,12 @@ std::vector<SurfaceProfile> profiles_of(const std::vector<ComparedCells>& compar
   return out;
 }
 
+std::optional<std::string> undeclared_in(const std::vector<io::ImpossibleHeights>& of_tiles, const fs::path& reference) {
+  io::ImpossibleHeights all;
+  for (const io::ImpossibleHeights& one : of_tiles) all.add(one);
+  return all.count > 0 ? std::optional(io::sentence_of(all, reference)) : std::nullopt;
+}
+
 SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, const SurfaceOptions& o) {
   SurfaceFindings found;
   if (!o.reference) {
@@ -176,12 +191,14 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   std::vector<quality::DifferenceSums> sums;
   std::vector<quality::DifferenceBin> bins;
   std::vector<ComparedCells> compared;
-  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "differences"), sums, bins, compared);
+  std::vector<io::ImpossibleHeights> of_tiles;
+  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "differences"), sums, bins, compared, of_tiles);
+  found.undeclared = undeclared_in(of_tiles, *o.reference);
   found.found = quality::judge_surface(sums, bins);
   found.reference = o.reference->filename().string();
   if (found.found.classes.empty())
     throw core::Error("the reference has no height where the survey has terrain", reference_of(context.survey, o).string(),
-                      "is it of this place, and in the survey's CRS?");
+                      found.undeclared.value_or("is it of this place, and in the survey's CRS?"));
   const core::Crs crs = crs_of_reference(reference_of(context.survey, o));
   if (crs.empty() || crs.heights() == core::Heights::unknown)
     found.heights = "the reference does not state what its heights count from: taken as " + context.heights;

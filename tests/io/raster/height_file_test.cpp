@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
 #include "io/raster/geotiff.h"
 #include "tests/world/support.h"
@@ -46,6 +49,41 @@ TEST(HeightFile, OtherPeoplesPixels) {
   core::Grid g = slope();
   write_grid(folder / "ft.tif", g, "EPSG:2263+6360");
   EXPECT_NEAR(read_heights(folder / "ft.tif").field.lowest(), 100 * 1200.0 / 3937.0, 1e-3);
+}
+
+/// An ASCII grid that declares no value for "none", or the one given.
+void write_ascii(const std::filesystem::path& file, const std::string& values, const std::string& nodata = {}) {
+  test::write_bytes(file, "ncols 4\nnrows 1\nxllcorner 1000\nyllcorner 2000\ncellsize 10\n" +
+                              (nodata.empty() ? "" : "nodata_value " + nodata + "\n") + values + "\n");
+}
+
+TEST(HeightFile, HeightsThatNoGroundHasAreVoid) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.asc";
+  const core::Box all{0, 0, 1e4, 1e4};
+  const auto impossible = [&] {
+    ImpossibleHeights found;
+    find_heights(file, all, [&](double, double, double v) { found.add(v); });
+    ImpossibleHeights of_grid;
+    const core::Grid grid = read_grid(file, std::nullopt, [&](double, double, double v) { of_grid.add(v); });
+    EXPECT_EQ(found.count, of_grid.count);
+    EXPECT_EQ(static_cast<std::uint64_t>(std::count_if(grid.height.begin(), grid.height.end(), [](float h) { return std::isnan(h); })),
+              found.count);
+    return found;
+  };
+  for (const char* none : {"-9999", "-32767", "-32768", "-99999", "9999", "-3.4028235e38", "1e31"}) {
+    write_ascii(file, std::string("100.5 101 ") + none + " 102");
+    const ImpossibleHeights found = impossible();
+    EXPECT_EQ(found.count, 1u) << none;
+    EXPECT_NEAR(found.lowest, std::stod(none), 1e-6 * std::abs(std::stod(none))) << none;
+    EXPECT_FALSE(read_heights(file).field.knows(1025, 2005)) << none;
+  }
+  write_ascii(file, "100.5 -430 8848 -10900");
+  EXPECT_EQ(impossible().count, 0u);
+  write_ascii(file, "-9999 101 99 102.5", "99");  // of a trench: the file declares another value
+  EXPECT_EQ(read_heights(file).field.lowest(), -9999.0);
+  write_ascii(file, "48000.5 47000 47100 47200");
+  EXPECT_THROW(read_heights(file), core::Error);
 }
 
 TEST(HeightFile, WhatIsNoGroundIsRefused) {
