@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -224,6 +225,8 @@ double width_of(const std::vector<ControlPoint>& corners) {
   return width;
 }
 
+std::string number(double v) { return core::format_number(v); }
+
 void hold_target(const std::vector<ControlPoint>& corners) {
   const std::string &target = corners[0].target, &place = corners[0].place;
   if (corners.size() < 3)
@@ -263,6 +266,13 @@ std::vector<ControlPoint> joined(std::vector<std::vector<ControlPoint>>& groups,
   return out;
 }
 
+/// What is impossible about a point; empty where nothing is. `metre`: per unit of its height; nothing where z is none.
+std::string fault_of(const RawPoint& raw, std::optional<double> metre) {
+  if (!raw.at.allFinite() || !(raw.at.cwiseAbs().maxCoeff() < farthest)) return "a coordinate is empty or not finite";
+  if (metre && !is_a_height(raw.at.z() * *metre)) return "the height is " + number(raw.at.z()) + ", which no ground has";
+  return {};
+}
+
 /// One file's points in ecef, corners of a target brought together.
 std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, const std::vector<RawLayer>& layers,
                                     const std::string& file, core::Tally& tally) {
@@ -276,6 +286,8 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     const core::Crs crs = crs_of(survey, f, layer, file);
     const core::Transform to_ecef(crs, core::wgs84_ecef());
     const double height_unit = crs.has_height_unit() ? 1.0 : metres_per_height(survey, crs);  // PROJ knows a unit that the CRS states
+    std::optional<double> metre;
+    if (f.kind != ControlKind::xy && !crs.is_geocentric()) metre = crs.has_height_unit() ? crs.vertical_metres_per_unit() : height_unit;
     // A target without one of its corners is another plane: all of it goes.
     all += layer.points.size();
     const auto leave_out = [&](const RawPoint& raw, const std::string& why) {
@@ -285,8 +297,13 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       if (!raw.target.empty()) lost.insert(raw.target);
     };
     for (const RawPoint& raw : layer.points) {
-      if (!raw.at.allFinite() || !(raw.at.cwiseAbs().maxCoeff() < farthest)) {
-        leave_out(raw, "a coordinate is empty or not finite");
+      if (metre && is_no_height(raw.at.z())) {  // however many: the file says that it has none
+        tally.count("control points without a height, left out", raw.place + ": z " + number(raw.at.z()));
+        if (!raw.target.empty()) lost.insert(raw.target);
+        continue;
+      }
+      if (const std::string fault = fault_of(raw, metre); !fault.empty()) {
+        leave_out(raw, fault);
         continue;
       }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);
@@ -296,7 +313,6 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       try {
         p.ecef = to_ecef({raw.at.x(), raw.at.y(), raw.at.z() * height_unit});
       } catch (const core::Error&) {
-        const auto number = [](double v) { return core::format_number(v); };
         leave_out(raw, "x " + number(raw.at.x()) + ", y " + number(raw.at.y()) + ", z " + number(raw.at.z()) + " is not a place of " +
                            crs.name());
         continue;

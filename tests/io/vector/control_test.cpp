@@ -166,6 +166,18 @@ TEST_F(Control, ImpossibleCoordinatesAreLeftOutAndCounted) {
   EXPECT_EQ(read(right_points(9) + "500100,5300200,480,r\n500110,5300200,480,r\n500110,5300210,480,r\n500100,nan,480,r\n").size(), 9u);
 }
 
+TEST_F(Control, RowsWithoutAHeightAreLeftOutHoweverMany) {
+  std::string text = right_points(5);
+  for (const char* none : {"-9999", "-32767", "-32768", "-99999"}) text += "500100,5300200," + std::string(none) + ",\n";
+  EXPECT_EQ(read(text).size(), 5u);
+  EXPECT_EQ(tally_.of("control points without a height, left out"), 4u);
+  tally_ = {};
+  EXPECT_EQ(read(right_points(9) + "500100,5300200,-12345,\n500100,5300200,1e6,\n").size(), 9u);
+  EXPECT_EQ(tally_.of("control points with an impossible coordinate, left out"), 2u);
+  EXPECT_NE(fault(right_points(2) + "500100,5300200,48000,\n").find("control.csv:4: the height is 48000, which no ground has"),
+            std::string::npos);
+}
+
 TEST_F(Control, AFileOfImpossibleCoordinatesIsRefused) {
   std::string text = right_points(9);
   for (int i = 0; i < 4; ++i) text += "500100,nan,480,\n";
