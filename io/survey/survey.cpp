@@ -7,6 +7,7 @@
 #include "core/printable.h"
 #include "io/las/las_ending.h"
 #include "io/store/address.h"
+#include "io/survey/wild_records.h"
 
 namespace swath::io {
 
@@ -66,6 +67,11 @@ std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
   return out;
 }
 
+double seconds_of(const Survey& survey, const FlightLine& line) {
+  const double seconds = (line.end - line.start).value, next = seconds + period_of(survey.line_time.scale);
+  return seconds <= 0.0 && next <= longest_crossing ? next : seconds;
+}
+
 std::vector<LineWindow> line_windows(const Survey& survey) {
   std::vector<LineWindow> out;
   if (survey.lines.empty()) return out;
@@ -73,7 +79,7 @@ std::vector<LineWindow> line_windows(const Survey& survey) {
   for (const FlightLine& l : survey.lines) {
     LineWindow w{l.id, 0, 0};
     w.start = clock(l.start.value);
-    w.end = w.start + (l.end - l.start).value;
+    w.end = w.start + seconds_of(survey, l);
     out.push_back(w);
   }
   std::sort(out.begin(), out.end(), [](const LineWindow& a, const LineWindow& b) { return a.start < b.start; });

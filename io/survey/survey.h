@@ -198,8 +198,7 @@ void describe(FlightLine& l, V& v) {
   v.option("id", l.id, core::within(0, 65535), "Number of the line, the points' source id.");
   v.option("name", l.name, "Name for reports.");
   v.option("start", l.start, "First instant, in the scale of line_time.");
-  v.option("end", l.end, "Last instant.");
-  v.check(l.end > l.start, "the line must end after it starts");
+  v.option("end", l.end, "Last instant; may lie in the next GPS week or UTC day, and be the smaller number then.");
 }
 
 /// What is known of a simulated survey.
@@ -302,6 +301,10 @@ struct LineWindow {
   int id = 0;
   core::GpsTime start = 0, end = 0;
 };
+/// Longest line that may cross the end of a GPS week or UTC day, s.
+constexpr double longest_crossing = 6 * 3600.0;
+/// Length of a line, s; not above 0 where it does not end after it starts.
+double seconds_of(const Survey& survey, const FlightLine& line);
 /// The survey's lines in GPS time, by start. Throws Error where their time scale is not stated.
 std::vector<LineWindow> line_windows(const Survey& survey);
 

@@ -335,19 +335,7 @@ class Checks {
     time(survey_.line_time, "line_time", false, false);
     if (survey_.line_time.unit.value != 1) fault("line_time.unit", "has no effect: start and end of a line state their own units");
     if (survey_.line_time.origin_at != 0) fault("line_time.origin_at", "has no effect: state the origin at zero");
-    std::map<int, size_t> ids;
-    std::vector<size_t> order(survey_.lines.size());
-    for (size_t i = 0; i < order.size(); ++i) {
-      order[i] = i;
-      const auto [first, fresh] = ids.try_emplace(survey_.lines[i].id, i);
-      if (!fresh)
-        fault(numbered("line", i) + ".id",
-              "id " + std::to_string(survey_.lines[i].id) + " is taken by " + numbered("line", first->second) + " already");
-    }
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return survey_.lines[a].start < survey_.lines[b].start; });
-    for (size_t k = 1; k < order.size(); ++k)
-      if (survey_.lines[order[k]].start < survey_.lines[order[k - 1]].end)
-        fault(numbered("line", order[k]) + ".start", "the line starts before " + numbered("line", order[k - 1]) + " ends");
+    for (const LineFault& f : line_faults(survey_)) fault(numbered("line", f.line) + "." + f.key, f.what, f.hint);
   }
 
   /// Records that would be read twice. One text file may serve two tables with other columns, or other lines.

@@ -112,6 +112,31 @@ TEST_F(SurveyFile, AGoodOneIsRead) {
   EXPECT_EQ(format_of(s.trajectory[0]), TrajectoryFormat::sbet);
 }
 
+/// line[1] is the flight's second one; after it a third.
+TEST_F(SurveyFile, ALineMayCrossTheEndOfTheWeekOrOfTheDay) {
+  const auto crossing = [&](const std::string& scale, const std::string& start, const std::string& end) {
+    const std::string week = "scale = \"gps_week\"\nweek = 2317\n";
+    return good.substr(0, good.find("[line_time]")) + "[line_time]\n" + (scale.empty() ? week : scale) + "[[line]]\nid = 7\nstart = \"" +
+           start + "\"\nend = \"" + end + "\"\n[[line]]\nid = 8\nstart = \"90 s\"\nend = \"140 s\"\n";
+  };
+  std::vector<LineWindow> w = line_windows(read(crossing("", "604780 s", "30 s")));
+  ASSERT_EQ(w.size(), 2u);
+  EXPECT_EQ(w[0].id, 7);
+  EXPECT_EQ(w[0].start, 2317 * 604800.0 + 604780);
+  EXPECT_EQ(w[0].end, 2318 * 604800.0 + 30);
+  EXPECT_EQ(w[1].start, 2318 * 604800.0 + 90);
+  const std::string day = "scale = \"utc_day\"\ndate = \"2024-06-05\"\n";
+  w = line_windows(read(crossing(day, "86390 s", "40 s")));
+  EXPECT_EQ(w[0].end - w[0].start, 50.0);
+  EXPECT_EQ(w[1].start - w[0].end, 50.0);
+  for (const auto& [text, hint] : {std::pair(crossing("", "580000 s", "30 s"), "may last 6 h at most"),
+                                   std::pair(crossing("", "500 s", "500 s"), "may last 6 h at most"),
+                                   std::pair(crossing("scale = \"gps\"\n", "604780 s", "30 s"), "gps_week or utc_day")}) {
+    EXPECT_NE(fault_of(text).find("the line must end after it starts"), std::string::npos) << fault_of(text);
+    EXPECT_NE(fault_of(text).find(hint), std::string::npos) << fault_of(text);
+  }
+}
+
 TEST_F(SurveyFile, EachFaultIsNamedWithItsPlace) {
   struct Case {
     std::string text, place, words;
