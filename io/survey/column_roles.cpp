@@ -175,9 +175,10 @@ void drop_incomplete(ColumnRoles& found) {
 
 /// Units that a survey.toml states or that are read as they are.
 bool is_known_unit(std::string_view unit, std::string_view key) {
-  static const std::set<std::string_view> known{"",      "deg",   "degrees", "rad",  "radians", "gon",  "degps", "radps",
-                                                "deg/s", "rad/s", "mps",     "mps2", "m/s",     "m/s2", "m/s^2", "m2",
-                                                "m^2",   "m",     "s",       "sec",  "seconds", "g",    "weeks"};
+  static const std::set<std::string_view> known{"",       "deg",    "degrees", "rad",  "radians", "gon",   "degps", "radps",  "deg/s",
+                                                "rad/s",  "mps",    "mps2",    "m/s",  "m/s2",    "m/s^2", "m2",    "m^2",    "m",
+                                                "s",      "sec",    "seconds", "g",    "weeks",   "metre", "meter", "metres", "meters",
+                                                "degree", "radian", "second",  "secs", "sow",     "week",  "-",     "none",   "m/s/s"};
   return known.contains(unit) || (unit == "ms" && key == "time");
 }
 
@@ -240,9 +241,12 @@ void take_map_place(const std::vector<std::string>& names, const std::vector<Pla
 
 }  // namespace
 
-ColumnRoles roles_of(const std::vector<std::string>& names) {
+ColumnRoles roles_of(const std::vector<std::string>& names, const std::vector<std::string>& units) {
   std::vector<PlainName> plain;
-  for (const std::string& name : names) plain.push_back(plain_name(name));
+  for (const std::string& name : names) {
+    plain.push_back(plain_name(name));
+    if (plain.back().unit.empty() && plain.size() <= units.size()) plain.back().unit = units[plain.size() - 1];
+  }
   for (const Kind& kind : kinds()) {
     // A distance beside a position or an attitude is the distance flown, and no range of a laser.
     const bool is_flown = !has_any(plain, {"range", "slant_range"}) && has_any(plain, {"latitude", "lat", "northing", "roll", "pitch"});

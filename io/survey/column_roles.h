@@ -28,8 +28,8 @@ struct ColumnRoles {
 };
 
 /// Judges a header by common names with their unit endings ("lat_deg", "gyro_x_radps", "Latitude (deg)"). Columns that only have numbers
-/// have none.
-ColumnRoles roles_of(const std::vector<std::string>& names);
+/// have none. `units`: of each column by a row below the names, "" for none; those in the names go first.
+ColumnRoles roles_of(const std::vector<std::string>& names, const std::vector<std::string>& units = {});
 
 /// The columns "name", "x", "y", "z" of surveyed points by usual names in English and German ("Easting", "Hochwert", "Z [m]"). A coordinate
 /// is left out where none of the names is one of it, or several are and none is its key.

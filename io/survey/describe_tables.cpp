@@ -19,6 +19,7 @@
 #include "io/text/fields.h"
 #include "io/text/line_reader.h"
 #include "io/text/npy.h"
+#include "io/text/table_start.h"
 
 namespace swath::io {
 namespace {
@@ -73,12 +74,14 @@ void describe(const CsdFacts& r, V& v) {
 struct NamedColumn {
   std::string name;
   std::optional<std::string> type{};
+  std::optional<std::string> unit{};
   Column values{};
 };
 template <class V>
 void describe(const NamedColumn& r, V& v) {
   v.result("name", r.name, "Name as the file has it, or the column's number from 1.");
   v.result("type", r.type, "Type as NumPy writes it.");
+  v.result("unit", r.unit, "Unit by the row below the names.");
   v.result("span", r.values.span, core::Form{}.always(), "Smallest and largest finite value; null where there is none.");
 }
 
@@ -259,8 +262,10 @@ core::Value describe_text(const Path& path) {
   const EventTable events = event_table(layout);
   const std::vector<std::vector<std::string>> first = first_records(path, layout);
   std::vector<size_t> indices;
+  const std::vector<std::string> units = column_units(path);
   for (size_t c = 0; c < layout.columns; ++c) {
     out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
+    if (c < units.size() && !units[c].empty()) out.columns.back().unit = units[c];
     if (events.are_events && c == events.id && !holds_numbers(path, layout, c)) continue;
     if (holds_words(first, c))
       out.warnings.push_back("column " + out.columns.back().name + " holds text");

@@ -84,10 +84,10 @@ Span span_of(const Value& facts, const ColumnRoles& roles, std::string_view role
 }
 
 ColumnRoles roles_in(const Value& facts) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, units;
   if (const Value* columns = facts.find("columns"))
-    for (const Value& one : columns->items()) names.push_back(text_of(one, "name"));
-  return roles_of(names);
+    for (const Value& one : columns->items()) names.push_back(text_of(one, "name")), units.push_back(text_of(one, "unit"));
+  return roles_of(names, units);
 }
 
 void sort_file(const FoundFile& f, Sorted& out) {

@@ -202,8 +202,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   out.data_begin = first.begin;
   out.data_line = first.number;
   if (have_header) {
-    out.names = split_delimited(header, out.delimiter);
-    if (table.names > 0 && out.names.size() != out.columns) out.names = split_delimited(header, delimiter_in(header));
+    out.names = header_names(header, out.delimiter, out.columns, table.names > 0);
     out.misfit = misfit_of(out, {fields.begin() + (cut ? 1 : 0), fields.end()});
     drop_last_column(out, {fields.begin() + (cut ? 1 : 0), fields.end()});
   } else if (!comment.empty()) {

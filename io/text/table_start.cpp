@@ -79,10 +79,23 @@ std::vector<Line> lines_above_records(const std::filesystem::path& file, const s
   return {};
 }
 
+/// The parts of a line between runs of two blanks or more.
+std::vector<std::string> split_at_runs(std::string_view line) {
+  std::vector<std::string> out;
+  for (size_t at = line.find_first_not_of(" \t\r"); at != line.npos;) {
+    const size_t end = std::min({line.find("  ", at), line.find('\t', at), line.find('\r', at), line.size()});
+    out.emplace_back(line.substr(at, end - at));
+    at = line.find_first_not_of(" \t\r", end);
+  }
+  if (!out.empty() && out.back().ends_with(' ')) out.back().pop_back();
+  return out;
+}
+
 /// A word for each column of a record.
 bool names_of(const Line& line, const Line& record) {
   if (line.numbers > 0) return false;
-  return line.fields == record.fields || split_delimited(line.text, record.delimiter).size() == record.fields;
+  return line.fields == record.fields || split_delimited(line.text, record.delimiter).size() == record.fields ||
+         (record.delimiter == ' ' && split_at_runs(line.text).size() == record.fields);
 }
 
 bool in_brackets(const std::string& field) { return field.starts_with('(') || field.starts_with('['); }
@@ -97,6 +110,29 @@ bool is_unit(const std::string& field) {
       "gpst",   "utc",     "hms",    "degc",    "nt",     "v",       "d",     "none",   "metre", "metres", "meter", "meters",
       "degree", "degrees", "radian", "radians", "second", "seconds", "feet",  "foot"};
   return in_brackets(field) || units.contains(core::lower_case(field));
+}
+
+/// A line below the names with nothing but units, one of them in brackets where blanks part them.
+bool are_units(const Line& units, const Line& record) {
+  if (units.numbers > 0 || units.delimiter != record.delimiter) return false;
+  const std::vector<std::string> fields = split_delimited(units.text, units.delimiter);
+  return fields.size() > 1 && std::all_of(fields.begin(), fields.end(), is_unit) &&
+         (record.delimiter != ' ' || std::any_of(fields.begin(), fields.end(), in_brackets));
+}
+
+/// "(deg)" and "[Deg]" are "deg".
+std::string bare_unit(const std::string& field) {
+  const size_t from = in_brackets(field) ? 1 : 0;
+  const size_t end = field.find_last_not_of(")] ");
+  return end == field.npos || end < from ? std::string() : core::lower_case(field.substr(from, end + 1 - from));
+}
+
+/// Where each of the words, in their order, ends in the line.
+std::vector<size_t> ends_of(const std::string& line, const std::vector<std::string>& words) {
+  std::vector<size_t> out;
+  size_t at = 0;
+  for (const std::string& word : words) out.push_back(at = line.find(word, at) + word.size());
+  return out;
 }
 
 /// Units for each column below its name: blanks part descriptions, too, so that of units between them one at least is in brackets.
@@ -125,7 +161,44 @@ TableStart table_start(const std::filesystem::path& file, const std::string& del
   if (names == 0) return are_mixed ? TableStart{} : TableStart{0, lines[data].number};  // records of other forms may be above
   const auto first =
       std::find_if(lines.begin() + static_cast<std::ptrdiff_t>(names), lines.end(), [](const Line& l) { return l.numbers > 0; });
-  return {lines[names - 1].number, first->number};
+  const bool has_units = names < data && are_units(lines[names], record);
+  return {lines[names - 1].number, first->number, has_units ? lines[names].number : 0};
+}
+
+std::vector<std::string> header_names(const std::string& header, char delimiter, size_t columns, bool below_description) {
+  std::vector<std::string> out = split_delimited(header, delimiter);
+  if (below_description && out.size() != columns) out = split_delimited(header, delimiter_in(header));
+  if (delimiter != ' ' || out.size() <= columns) return out;
+  std::vector<std::string> by_runs = split_at_runs(header);
+  return by_runs.size() == columns ? by_runs : out;
+}
+
+std::vector<std::string> column_units(const std::filesystem::path& file, const std::string& delimiter) {
+  const TableStart table = table_start(file, delimiter);
+  if (table.units == 0) return {};
+  std::string names, units, record;
+  LineReader lines(file);
+  for (std::string_view text; record.empty() && lines.next(text);)
+    if (lines.number() == table.names)
+      names = text;
+    else if (lines.number() == table.units)
+      units = text;
+    else if (lines.number() == table.data)
+      record = text;
+  const char by = delimiter.empty() ? delimiter_in(record) : delimiter_from(delimiter, file);
+  const size_t columns = split_delimited(record, by).size();
+  const std::vector<std::string> of_names = header_names(names, by, columns, true);
+  std::vector<std::string> fields = split_delimited(units, by), out(columns);
+  for (std::string& unit : fields) unit = bare_unit(unit);
+  if (fields.size() == columns) return fields;
+  if (by != ' ' || fields.size() > columns || of_names.size() != columns) return {};
+  const std::vector<size_t> name_ends = ends_of(names, of_names), unit_ends = ends_of(units, split_delimited(units, by));
+  for (size_t u = 0, c = 0; u < fields.size(); ++u, ++c) {
+    const auto distance = [&](size_t k) { return std::max(name_ends[k], unit_ends[u]) - std::min(name_ends[k], unit_ends[u]); };
+    while (c + fields.size() - u < columns && distance(c + 1) < distance(c)) ++c;
+    out[c] = fields[u];
+  }
+  return out;
 }
 
 }  // namespace swath::io

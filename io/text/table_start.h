@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace swath::io {
 
@@ -12,6 +14,7 @@ namespace swath::io {
 struct TableStart {
   std::uint64_t names = 0;  ///< the line of the columns' names
   std::uint64_t data = 0;   ///< the first line of numbers
+  std::uint64_t units = 0;  ///< the line of the columns' units
 };
 
 /// Where the table begins in a text with other lines before it, or with a line of units below its names. Nothing (both 0) where the file
@@ -20,5 +23,13 @@ struct TableStart {
 /// above it that has a word for each column, or the line above that where the nearest holds the columns' units. `delimiter`: as stated, or
 /// "".
 TableStart table_start(const std::filesystem::path& file, const std::string& delimiter = {});
+
+/// The names of a header over so many columns. A table below a description may have names between commas and numbers between blanks; where
+/// blanks part both, names of several words ("ELLIPSOID HEIGHT") are parted by two blanks or more.
+std::vector<std::string> header_names(const std::string& header, char delimiter, size_t columns, bool below_description);
+
+/// The units of the columns by the row below their names, without brackets, lower case; "" for a column without one; empty where there is
+/// no such row. Of fewer units than names each is that of the column that ends nearest to it.
+std::vector<std::string> column_units(const std::filesystem::path& file, const std::string& delimiter = {});
 
 }  // namespace swath::io

@@ -153,6 +153,27 @@ TEST(Proposal, AnExportOfPospacIsATrajectory) {
   EXPECT_NE(p.toml.find("latitude = \"LATITUDE\", longitude = \"LONGITUDE\", height = \"5\""), std::string::npos) << p.toml;
 }
 
+TEST(Proposal, TheRowOfUnitsSaysWhatTheAnglesAre) {
+  const std::string names = "Project: a\n\n  GPSTime   Latitude   Longitude   H-Ell   Roll   Pitch   Heading  Q\n";
+  const std::string rows = "474009.0 47.9 10.5 611.2 0.5 1.2 88.0 1\n474009.1 47.9 10.5 611.2 0.5 1.2 88.0 1\n";
+  const Proposal p = proposed_of(names + "    (sec)      (deg)       (deg)     (m)  (deg)   (deg)     (deg)\n" + rows);
+  EXPECT_NE(p.toml.find("\nangle_unit = \"deg\""), std::string::npos) << p.toml;
+  EXPECT_FALSE(is_open(p, "trajectory[1].angle_unit")) << p.toml;
+  const Proposal mixed = proposed_of(names + "    (sec)      (deg)       (deg)    (ft)  (rad)   (rad)     (rad)\n" + rows);
+  EXPECT_NE(mixed.toml.find("some columns are in deg and others in rad"), std::string::npos) << mixed.toml;
+  EXPECT_NE(mixed.toml.find("H-Ell has a unit that is not read"), std::string::npos) << mixed.toml;
+}
+
+TEST(Proposal, AnExportOfPospacBetweenBlanksHasNamesOfSeveralWords) {
+  const Proposal p = proposed_of(
+      "POSPac MMS Export\nMission: 12\n"
+      "     TIME   DISTANCE    EASTING    NORTHING  ELLIPSOID HEIGHT   LATITUDE  LONGITUDE  ELLIPSOID HEIGHT   ROLL  PITCH  HEADING\n"
+      "    (time in Sec, distance in Meters, position in Meters, lat, long in Degrees, orientation angles in Degrees)\n\n"
+      "474009.0 12.3 500123.1 5300456.2 611.2 47.9064 10.512 611.2 0.5 1.2 88.0\n"
+      "474009.1 12.4 500123.2 5300456.2 611.2 47.9064 10.512 611.2 0.5 1.2 88.0\n");
+  EXPECT_NE(p.toml.find("latitude = \"LATITUDE\", longitude = \"LONGITUDE\", height = \"5\""), std::string::npos) << p.toml;
+}
+
 TEST(Proposal, ATrajectoryByXAndYAsksWhichIsTheNorthing) {
   const std::string row = "474009.0,5300456.2,500123.1,611.2,0.5,1.2,88.0\n474009.1,5300456.3,500123.1,611.2,0.5,1.2,88.0\n";
   const Proposal open = proposed_of("GpsTime,Y,X,Z,Roll,Pitch,Azimuth\n" + row);

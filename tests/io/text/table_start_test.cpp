@@ -60,6 +60,26 @@ TEST_F(TableStarts, ADescriptionAboveTheTableIsPassedOver) {
   EXPECT_EQ(read_all(made("made by a logger\non a day in June\n" + table), {"1", "2", "3"}), rows);
 }
 
+TEST_F(TableStarts, NamesOfSeveralWordsBetweenRunsOfBlanks) {
+  const Rows rows{{1, 2, 3}, {4, 5, 6}};
+  const std::string names = "   TIME   ELLIPSOID HEIGHT  ROLL \n", table = "  1  2 3\n  4  5 6\n";
+  for (const std::string& text :
+       {names + table, "POSPac MMS ASCII Export\nMission: 1\n" + names + "  (time in Sec, height in Meters)\n\n" + table})
+    EXPECT_EQ(read_all(made(text), {"TIME", "ELLIPSOID HEIGHT", "ROLL"}), rows) << text;
+}
+
+TEST_F(TableStarts, UnitsBelowTheNamesAreThoseOfTheirColumns) {
+  using Units = std::vector<std::string>;
+  const auto units = [&](const std::string& text) { return column_units(made(text)); };
+  EXPECT_EQ(units("Project: a\n\n  GPSTime   H-Ell   Roll  Q\n    (sec)     (m)  (Deg)\n 1 2 3 1\n 4 5 6 1\n"),
+            (Units{"sec", "m", "deg", ""}));
+  EXPECT_EQ(units("Project: a\n\n  GPSTime  Q   H-Ell   Roll\n    (sec)        (m)  [rad]\n 1 1 2 3\n 4 1 5 6\n"),
+            (Units{"sec", "", "m", "rad"}));
+  EXPECT_EQ(units("GPSTime,H-Ell,Roll\ns,m,deg\n1,2,3\n4,5,6\n"), (Units{"s", "m", "deg"}));
+  EXPECT_EQ(units("GPSTime,H-Ell,Roll\n1,2,3\n4,5,6\n"), Units{});
+  EXPECT_EQ(units("a flight here\nGPSTime H-Ell Roll\n1 2 3\n4 5 6\n"), Units{});
+}
+
 TEST_F(TableStarts, WordsAboveTheNamesAreNoNames) {
   const DelimitedLayout layout = inspect_delimited(made("Company,Plane,Pilot\ntime,lat,height\n1,2,3\n4,5,6\n7,8,9\n"));
   EXPECT_EQ(layout.names, (std::vector<std::string>{"time", "lat", "height"}));
