@@ -11,6 +11,8 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#include <poll.h>
+#include <unistd.h>
 
 #include "core/error.h"
 #include "core/printable.h"
@@ -35,6 +37,12 @@ void use_own_typeface() {
   const std::filesystem::path fonts = swath::pipeline::program_folder() / "../share/swath/fonts/fonts.conf";
   std::error_code ec;
   if (std::filesystem::exists(fonts, ec)) setenv("FONTCONFIG_FILE", fonts.lexically_normal().c_str(), 0);
+}
+
+/// Whether the standard output is a pipe whose reader has gone, as that of `| head`: what it did not want is no fault.
+bool is_reader_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP));
 }
 
 }  // namespace
@@ -70,6 +78,7 @@ int swath_program(int argc, char** argv) {
     const int code = commands.call(argc, argv);
     errno = 0;
     if (const bool failed = std::fflush(stdout) != 0; failed || std::ferror(stdout) != 0) {
+      if (errno == EPIPE || is_reader_gone()) return code;
       const std::string why = failed && errno ? std::string(": ") + std::strerror(errno) : "";
       throw swath::core::Error("cannot write to the standard output" + why, "", errno == ENOSPC ? "the disk is full" : "");
     }

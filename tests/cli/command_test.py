@@ -2,11 +2,12 @@
 """The commands on good input: help, exit codes, what is printed where, every config of configs/."""
 import json
 import re
+import subprocess
 import tomllib
 import unittest
 from pathlib import Path
 
-from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, schema_faults, stage, swath
+from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, SWATH, Case, products, schema_faults, stage, swath
 
 COMMANDS = ["run", "check", "explain", "tasks", "task", "stages", "schema", "simulate", "info", "qc", "block-theory", "block-drift", "volumes", "profile", "map-dtm", "docs"]
 CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
@@ -50,6 +51,10 @@ class Help(Case):
         self.assertLessEqual({"run", "dtm", "demo", "plan", "map-dtm", "profile", "block", "undistort", "task", "tasks"}, writing)
         self.assert_error(swath("map-dtm", "none.gpkg", "-o", self.folder / "map"), 1, "none.gpkg")
         self.assert_error(swath("map-dtm", "none.gpkg", "-o", ""), 2, "the name is empty")
+
+    def test_a_reader_that_has_enough_is_no_fault(self):
+        done = subprocess.run(["bash", "-o", "pipefail", "-c", f"'{SWATH}' schema | head -1"], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_version(self):
         self.assertRegex(swath("--version").stdout, r"^swath \d+\.\d+\.\d+\n$")
