@@ -226,6 +226,16 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
   }
 }
 
+/// Point clouds begin with "LASF", whatever their name.
+void refuse_cloud(const std::filesystem::path& file) {
+  char begin[4] = {};
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec) || !std::ifstream(file, std::ios::binary).read(begin, sizeof begin)) return;
+  if (std::string_view(begin, sizeof begin) == "LASF")
+    throw core::usage_error("is a point cloud, not a survey or a config", file.string(),
+                            "name it as the file of a [[points]] in survey.toml, or use `swath dtm " + file.string() + "`");
+}
+
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file) {
@@ -265,6 +275,7 @@ core::Value parse_json(const std::string& text, const std::string& name) {
 }
 
 core::Value read_value_file(const std::filesystem::path& file) {
+  refuse_cloud(file);
   const std::string text = read_text_file(file);
   return file.extension() == ".json" ? parse_json(text, file.string()) : parse_toml(text, file.string());
 }

@@ -56,6 +56,12 @@ class Help(Case):
         done = subprocess.run(["bash", "-o", "pipefail", "-c", f"'{SWATH}' schema | head -1"], capture_output=True, text=True, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_a_cloud_in_place_of_a_survey(self):
+        cloud = self.folder / "a.laz"
+        cloud.write_bytes(b"LASF" + bytes(400))
+        self.assert_error(swath("run", CONFIG, "--survey", cloud, "--output", self.folder / "out"), 2, "is a point cloud, not a survey",
+                          "swath dtm ")
+
     def test_version(self):
         self.assertRegex(swath("--version").stdout, r"^swath \d+\.\d+\.\d+\n$")
 
