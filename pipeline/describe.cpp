@@ -113,7 +113,12 @@ std::vector<std::string> settable_options() {
 std::string stage_help(const std::string& name) {
   const auto s = stages::make_stage(name);
   if (!s) {
-    const std::string near = core::nearest(name, stage_names());
+    std::vector<std::string> ending;  // with the name behind the dot: smrf of filters.smrf
+    for (const std::string& one : stage_names())
+      if (one.ends_with("." + name)) ending.push_back(one);
+    if (ending.size() == 1) return stage_help(ending.front());
+    std::string near = core::nearest(name, stage_names());
+    for (const std::string& one : ending) near = one == ending.front() ? one : near + "' or '" + one;
     throw core::usage_error("'" + name + "' is not a stage", "",
                             near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }

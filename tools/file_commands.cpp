@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files: simulated surveys, what a file holds.
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "core/config/result_visitors.h"
 #include "io/survey/info.h"
@@ -49,13 +51,22 @@ int simulate_survey(const SimulateArguments& a) {
 }
 
 struct InfoArguments {
-  std::string name;
+  std::vector<std::string> names;
   bool json = false;
 };
 
 int info(const InfoArguments& a) {
-  const core::Value found = io::describe_file(a.name);
-  a.json ? print_json(found) : print(io::info_text(found));
+  if (a.json && a.names.size() > 1) {
+    core::Value all = core::Value::array();
+    for (const std::string& name : a.names) all.push(io::describe_file(name));
+    print_json(all);
+    return 0;
+  }
+  for (const std::string& name : a.names) {
+    const core::Value found = io::describe_file(name);
+    if (name != a.names.front()) print("\n");
+    a.json ? print_json(found) : print(io::info_text(found));
+  }
   return 0;
 }
 
@@ -77,10 +88,10 @@ void add_info_command(Commands& commands) {
   const auto a = std::make_shared<InfoArguments>();
   auto* c = commands.add(
       "info",
-      "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nReport what a file holds (points, trajectories, "
+      "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nReport what files hold (points, trajectories, "
       "raw records, RINEX, PCAP, rasters, GeoPackage, DXF, JSON), and what looks wrong.",
       [a] { return info(*a); });
-  c->add_option("FILE", a->name, "File")->required();
+  c->add_option("FILE", a->names, "Files; of several --json gives a list")->required();
   c->add_flag("--json", a->json, "As JSON");
 }
 

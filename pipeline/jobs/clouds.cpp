@@ -31,6 +31,18 @@ namespace fs = std::filesystem;
                           "name the files that you may read, or have the rights of the folder changed");
 }
 
+/// What to do about a folder without clouds of its own.
+std::string hint_of_subfolders(const fs::path& folder) {
+  std::size_t files = 0;
+  std::error_code ec;
+  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
+    std::error_code inner;
+    for (fs::directory_iterator in(at->path(), inner); !inner && in != end; in.increment(inner)) files += io::has_las_ending(in->path());
+  }
+  if (files == 0) return "name the files, or another folder";
+  return "its subfolders hold " + std::to_string(files) + ": name '" + (folder / "*").string() + "/*.la[sz]'";
+}
+
 /// The LAS and LAZ files of a folder; of an Entwine Point Tile its index.
 std::vector<fs::path> files_in_folder(const fs::path& folder) {
   std::vector<fs::path> out;
@@ -39,7 +51,7 @@ std::vector<fs::path> files_in_folder(const fs::path& folder) {
   for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
     if (io::has_las_ending(at->path())) out.push_back(at->path());
   if (ec) refuse_unreadable("cannot read the folder", folder, ec.value());
-  if (out.empty()) throw core::usage_error("the folder holds no LAS or LAZ file", folder.string(), "name the files, or another folder");
+  if (out.empty()) throw core::usage_error("the folder holds no LAS or LAZ file", folder.string(), hint_of_subfolders(folder));
   std::sort(out.begin(), out.end());
   return out;
 }

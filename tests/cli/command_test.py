@@ -62,6 +62,17 @@ class Help(Case):
         self.assert_error(swath("run", CONFIG, "--survey", cloud, "--output", self.folder / "out"), 2, "is a point cloud, not a survey",
                           "swath dtm ")
 
+    def test_a_stage_by_the_name_behind_its_dot(self):
+        self.assertTrue(swath("stages", "smrf").stdout.startswith("filters.smrf: "))
+        self.assert_error(swath("stages", "las"), 2, "did you mean 'readers.las' or 'writers.las'")
+
+    def test_info_of_several_files(self):
+        table = self.folder / "a.csv"
+        table.write_text("name,x,y,z\na,1,2,3\nb,4,5,6\n")
+        one, two = swath("info", table), swath("info", table, table)
+        self.assertEqual((two.returncode, two.stdout), (0, one.stdout + "\n" + one.stdout))
+        self.assertEqual(len(json.loads(swath("info", table, table, "--json").stdout)), 2)
+
     def test_version(self):
         self.assertRegex(swath("--version").stdout, r"^swath \d+\.\d+\.\d+\n$")
 
