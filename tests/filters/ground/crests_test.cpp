@@ -59,6 +59,26 @@ TEST(Crests, TheRimOfABreakComesBack) {
   EXPECT_EQ(left_off(lowest, ground), 0);
 }
 
+TEST(Crests, TheTopOfAPileComesBack) {
+  for (const double degrees : {30.0, 36.0, 40.0}) {
+    const double steep = std::tan(degrees * M_PI / 180.0);
+    const Raster lowest =
+        raster([&](int i, int j) { return level + std::max(0.0, steep * (18.0 - std::hypot(1.0, std::hypot(i - middle, j - middle)))); });
+    Raster ground = without(lowest, [](int i, int j) { return std::hypot(i - middle, j - middle) <= 9.0; });
+    EXPECT_LE(left_off(lowest, ground), 1) << degrees;  // of 253: the apex may stay off
+  }
+}
+
+TEST(Crests, ABenchBetweenTwoWallsStaysOff) {
+  // Deck, dam of concrete, ramp: level with the ground at both ends, sheer on both sides.
+  const auto bench = [](int i, int j) { return std::abs(i - middle) <= 3 && std::abs(j - middle) <= 20; };
+  for (const double height : {2.0, 4.0}) {
+    const Raster lowest = raster([&](int i, int j) { return std::abs(j - middle) <= 20 && !bench(i, j) ? level - height : level; });
+    Raster ground = without(lowest, bench);
+    EXPECT_EQ(left_off(lowest, ground), 7 * 41) << height;
+  }
+}
+
 TEST(Crests, RoofsStayOff) {
   // On level ground, and on a slope whose upper side the eaves touch.
   for (const double slope : {0.0, 0.5}) {

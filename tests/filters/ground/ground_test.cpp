@@ -153,6 +153,22 @@ TEST(Ground, ASpurThatNoDiskRestsOnStays) {
   EXPECT_GT(kept, b.size() * 997 / 1000);  // of a spur that is cut off, 4 % of all are lost
 }
 
+TEST(Ground, StockpilesKeepTheirTops) {
+  constexpr double repose = 0.7265, top = 12.0;  // 36 deg; m
+  core::Block b = test::make_scene("flat").block;
+  const auto pile = [&](size_t p) { return top - repose * (std::hypot(1.0, std::hypot(b.x[p] - 100.0, b.y[p] - 80.0)) - 1.0); };
+  size_t on_top = 0, kept = 0;
+  for (size_t p = 0; p < b.size(); ++p) b.z[p] += std::max(0.0, pile(p));
+  classify_ground(b, b.size(), {});
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (pile(p) < 0.5 * top) continue;
+    ++on_top;
+    kept += b.classification[p] == core::point_class::ground;
+  }
+  ASSERT_GT(on_top, 200U);
+  EXPECT_GE(kept, on_top * 98 / 100);
+}
+
 /// Six scenes in a row, 1200 m x 160 m, with sheer steps between them.
 core::Block six_scenes() {
   core::Block all;
