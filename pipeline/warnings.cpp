@@ -86,6 +86,9 @@ const std::vector<WarningKind>& warning_kinds() {
        "See quality.points in report.json by cover; or raise the limit."},
       {"points.outside_box", "Points lie well outside the box that their file's header states.",
        "The points are used as they are; have the file written again, for other programs trust the box."},
+      {"powerlines.none", "No span of a power line was found among the returns of class wire (14): there is no clearance.",
+       "Lower filters.classify.wire_height where wires hang lower above the ground, and terrain.powerlines.min_span for short spans; where "
+       "there is no line this is right."},
       {"run.memory", "A stage that holds a whole flight is estimated to need more memory than the default of run.memory leaves.",
        "State what the run may take, such as run.memory = \"4 GB\": any value but the default is enforced, and what does not fit is "
        "refused."},
