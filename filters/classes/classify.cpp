@@ -55,7 +55,8 @@ double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.val
 /// Metres of points around a tile that the planes and what follows from them depend on.
 double planes_halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
-  return planar_points_halo() + std::max({decks + roofs_reach(o), wire_points_halo(), tower_points_halo()});
+  // Both planes and what wires need of them hold the districts' halo.
+  return planar_points_halo() + std::max({decks + roofs_reach(o), wire_points_halo() - Districts::halo(), tower_points_halo()});
 }
 
 std::uint8_t vegetation(float height, const ClassifyOptions& o) {
@@ -236,10 +237,14 @@ class Structures {
     std::vector<std::uint8_t> high(block_.size(), 0), wire(block_.size(), 0);
     for (size_t p = 0; p < block_.size(); ++p) {
       if (!needed.holds(block_, p)) continue;
-      wire[p] = wires_[p] != 0 && !is_on_roof(p);
+      wire[p] = is_on_roof(p) ? std::uint8_t{0} : wires_[p];
       high[p] = block_.height[p] >= least_tower_height && (raised_[p] ? !is_surface(p) : is_isolated(block_, p)) && wires_[p] != 1;
     }
     towers_ = tower_points(block_, wire, high, own);
+    for (size_t p = 0; p < own; ++p) {
+      if (wires_[p] == wire_at_support) wires_[p] = towers_[p] == 2;
+      if (towers_[p] == 2) wires_[p] = 1;
+    }
   }
 
   const core::Block& block_;

@@ -4,26 +4,32 @@
 #include "filters/classes/towers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <tuple>
 
+#include "core/config/units.h"
 #include "filters/bins.h"
+#include "filters/classes/wires.h"
 
 namespace swath::filters {
 namespace {
 
-constexpr double tower_cell = 1.0;       // m
-constexpr int body_ring = 1;             // cells around the middle one
-constexpr int arms_ring = 4;             // cells
-constexpr size_t fewest_of_body = 3;     // returns
-constexpr double least_body = 3.0;       // m, from the lowest of them to the highest
-constexpr double wires_near = 6.0;       // m in plan
-constexpr double below_wires = 3.0;      // m below the lowest wire: its top may have been taken for wire
-constexpr double crown_depth = 5.0;      // m below its top a crown is wide
-constexpr double arms_below = 3.0;       // m
-constexpr double most_of_ring = 0.2;     // of its cells: arms
+constexpr double tower_cell = 1.0;     // m
+constexpr int body_ring = 1;           // cells around the middle one
+constexpr int arms_ring = 4;           // cells
+constexpr size_t fewest_of_body = 3;   // returns
+constexpr double least_body = 3.0;     // m, from the lowest of them to the highest
+constexpr double wires_near = 6.0;     // m in plan
+constexpr double below_wires = 3.0;    // m below the lowest wire: its top may have been taken for wire
+constexpr double crown_depth = 5.0;    // m below its top a crown is wide
+constexpr double arms_below = 3.0;     // m
+constexpr double most_of_ring = 0.2;   // of its cells: arms
+constexpr double most_off_row = 0.05;  // of its cells: beside arms of lattice, which are several cells wide
+constexpr double row_half = 1.0;       // m: half the width of arms
+constexpr int row_directions = 16;
 constexpr double least_on_tower = 0.01;  // m of rounding
 constexpr double gap_of_body = 5.0;      // m between returns of a body one above the other: a crown below it is looked at
 constexpr double gap_of_pole = 10.0;     // m between those of a pole, which few pulses hit
@@ -38,7 +44,8 @@ class TowerSearch {
   TowerSearch(const core::Block& b, const std::vector<std::uint8_t>& wire, const std::vector<std::uint8_t>& tall)
       : block_(b),
         tall_(b, tower_cell, arms_ring, [&](size_t p) { return tall[p] != 0; }),
-        wires_(b, wires_near, 1, [&](size_t p) { return wire[p] != 0; }) {}
+        wires_(b, wires_near, 1, [&](size_t p) { return wire[p] == 1 || wire[p] == wire_carried_on; }),
+        wire_(wire) {}
 
   std::vector<std::uint8_t> run(size_t own) const {
     std::vector<std::uint8_t> out(own, 0);
@@ -49,11 +56,14 @@ class TowerSearch {
         const std::optional<Range> wires = wires_around(i, j);
         if (!wires) continue;
         const std::optional<Body> body = body_at(i, j, *wires);
-        if (!body || !is_bare_around(i, j, std::min(wires->low, body->top))) continue;
+        if (!body || !is_bare_around(i, j, std::min(wires->low, body->top) - crown_depth, *body)) continue;
         each(i, j, arms_ring, [&](int ring, const Bins::Point& q, std::uint32_t row) {
           if (row >= own || q.z > wires->high + above_wires) return;
           const bool beside = std::hypot(q.x - body->x, q.y - body->y) <= body->radius;
-          if ((ring <= body_ring && beside) || q.z >= wires->low - arms_below) out[row] = 1;
+          if (ring <= body_ring && beside)
+            out[row] = 1;
+          else if (q.z >= wires->low - arms_below && out[row] == 0)
+            out[row] = wire_[row] >= wire_carried_on ? 2 : 1;
         });
       }
     return out;
@@ -124,20 +134,39 @@ class TowerSearch {
     return b;
   }
 
-  bool is_bare_around(int i, int j, double top) const {
+  /// Are there nearly no returns from z = `from` on around the body, but those of wires and of arms?
+  bool is_bare_around(int i, int j, double from, const Body& body) const {
+    std::array<int, row_directions> off_row{};
     int taken = 0, cells = 0;
     for (int dj = -arms_ring; dj <= arms_ring; ++dj)
       for (int di = -arms_ring; di <= arms_ring; ++di) {
         if (std::max(std::abs(di), std::abs(dj)) <= body_ring) continue;
         ++cells;
         const auto points = tall_.in(i + di, j + dj);
-        taken += std::any_of(points.begin(), points.end(), [&](const Bins::Point& q) { return q.z >= top - crown_depth; });
+        const auto rows = tall_.rows(i + di, j + dj);
+        std::array<bool, row_directions> off{};
+        bool any = false;
+        for (size_t k = 0; k < points.size(); ++k) {
+          if (points[k].z < from || wire_[rows[k]] >= wire_carried_on) continue;
+          any = true;
+          for (size_t d = 0; d < off.size(); ++d) off[d] = off[d] || off_axis(points[k], body, d) > row_half;
+        }
+        taken += any;
+        for (size_t d = 0; d < off.size(); ++d) off_row[d] += off[d];
       }
-    return static_cast<double>(taken) <= most_of_ring * static_cast<double>(cells);
+    return static_cast<double>(taken) <= most_of_ring * static_cast<double>(cells) ||
+           static_cast<double>(*std::min_element(off_row.begin(), off_row.end())) <= most_off_row * static_cast<double>(cells);
+  }
+
+  /// m in plan from the axis through the body in a direction.
+  static double off_axis(const Bins::Point& q, const Body& body, size_t direction) {
+    const double bearing = core::pi * static_cast<double>(direction) / row_directions;
+    return std::abs((q.y - body.y) * std::cos(bearing) - (q.x - body.x) * std::sin(bearing));
   }
 
   const core::Block& block_;
   Bins tall_, wires_;
+  const std::vector<std::uint8_t>& wire_;
 };
 
 }  // namespace

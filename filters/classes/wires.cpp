@@ -36,8 +36,8 @@ constexpr double sleeve = 0.5;                // m around the line: empty beside
 constexpr double most_close = 0.1;            // points in it, of the returns on the line
 constexpr double most_bent = 0.01;            // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
 constexpr size_t wire_points_at_once = 1024;  // of one thread
-constexpr std::uint8_t carried_on = 2;
-constexpr double thinned = 1.0;  // m: of each cube of this side one return takes part in the search for lines
+constexpr double support_gap = 12.0;          // m of a wire among the returns of its support
+constexpr double thinned = 1.0;               // m: of each cube of this side one return takes part in the search for lines
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -104,6 +104,7 @@ class Search {
  public:
   Search(const core::Block& b, const std::vector<std::uint8_t>& candidate, const std::vector<std::uint8_t>& surface, const Districts& where)
       : block_(b),
+        candidate_(candidate),
         surface_(surface),
         close_(b, tube_bin, 1, [&](size_t p) { return candidate[p] || surface[p]; }),
         airy_(airy_points(b, candidate, surface, where)),
@@ -133,19 +134,21 @@ class Search {
     return out;
   }
 
-  /// And the airy points that carry on a line of `found` ones.
-  std::vector<std::uint8_t> with_ends(const std::vector<std::uint8_t>& found, size_t own) const {
+  /// And the candidates that carry on a line of `found` ones, airy or not.
+  std::vector<std::uint8_t> with_ends(const std::vector<std::uint8_t>& found, const OwnBox& needed) const {
     std::vector<std::uint8_t> out = found;
     if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
-    const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
-    core::in_parallel(own, wire_points_at_once, [&](size_t from, size_t to) {
+    // Of dense returns the nearest show no direction.
+    const auto stands_for = [&](size_t p) { return found[p] && few_[p]; };
+    const Bins lines(block_, shortest / bins_of_reach, 0, stands_for), long_lines(block_, reach / bins_of_reach, 0, stands_for);
+    core::in_parallel(block_.size(), wire_points_at_once, [&](size_t from, size_t to) {
       WireNeighbours around;
       for (size_t p = from; p < to; ++p) {
-        if (!airy_[p] || found[p]) continue;
-        around.find(lines, block_, p, shortest);
-        if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
-        for (size_t k = 0; k < around.size() && !out[p]; ++k)
-          if (around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k])) out[p] = carried_on;
+        if (!candidate_[p] || found[p] || !needed.holds(block_, p)) continue;
+        if (airy_[p] && carried(around, lines, p, shortest, longest_gap, false))
+          out[p] = wire_carried_on;
+        else if (carried(around, long_lines, p, reach, support_gap, true))
+          out[p] = wire_at_support;
       }
     });
     return out;
@@ -261,31 +264,40 @@ class Search {
     return true;
   }
 
-  static bool carries_on(const WireNeighbours& around, const Vector3d& to) {
+  bool carried(WireNeighbours& around, const Bins& lines, size_t p, double radius, double gap, bool one_side) const {
+    around.find(lines, block_, p, radius);
+    if (around.size() + 1 < fewest || !around.any_within(gap)) return false;
+    for (size_t k = 0; k < around.size(); ++k)
+      if (around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k], gap, one_side)) return true;
+    return false;
+  }
+
+  /// `one_side`: wires change their slope at a support, so that what is beyond it says nothing.
+  static bool carries_on(const WireNeighbours& around, const Vector3d& to, double gap, bool one_side) {
     std::vector<Vector3d> roughly = along(around, to);
-    if (roughly.size() < fewest) return false;
     roughly.erase(roughly.begin());  // the line must not follow the point
+    if (one_side) std::erase_if(roughly, [&](const Vector3d& q) { return q.head<2>().dot(to.head<2>()) < 0.0; });
+    if (roughly.size() + 1 < fewest) return false;
     const auto line = fit(roughly, to.head<2>());
     if (!line || std::abs(line->bend) > most_bent || line->off(Vector3d::Zero()) > on_line) return false;
-    return std::any_of(roughly.begin(), roughly.end(),
-                       [&](const Vector3d& q) { return line->off(q) <= on_line && q.norm() <= longest_gap; });
+    return std::any_of(roughly.begin(), roughly.end(), [&](const Vector3d& q) { return line->off(q) <= on_line && q.norm() <= gap; });
   }
 
   const core::Block& block_;
-  const std::vector<std::uint8_t>& surface_;
+  const std::vector<std::uint8_t>&candidate_, &surface_;
   Bins close_;
   std::vector<std::uint8_t> airy_, few_;
 };
 
 }  // namespace
 
-double wire_points_halo() { return airy_points_halo() + clear_tube + reach + shortest + thinned + reach; }
+double wire_points_halo() { return airy_points_halo() + clear_tube + reach + reach + thinned + reach + wires_beyond; }
 
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
                                       const std::vector<std::uint8_t>& surface, const Districts& where, size_t own) {
   if (std::find(candidate.begin(), candidate.end(), 1) == candidate.end()) return std::vector<std::uint8_t>(b.size(), 0);
   const Search search(b, candidate, surface, where);
-  return search.with_ends(search.in_line(OwnBox(b, own, shortest + thinned)), own);
+  return search.with_ends(search.in_line(OwnBox(b, own, reach + thinned + wires_beyond)), OwnBox(b, own, wires_beyond));
 }
 
 }  // namespace swath::filters

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "filters/classes/wires.h"
 #include "tests/world/power_line.h"
 
 namespace swath::filters {
@@ -79,6 +80,37 @@ TEST(Towers, ABirdAboveAndABushAtItsFootAreNotOfTheMast) {
     if (p >= mast || s.tall[p]) {
       EXPECT_EQ(found[p] != 0, p < mast) << s.b.x[p] << " " << s.b.y[p] << " " << s.b.z[p];
     }
+}
+
+/// 1 m wide, up to 22 m, with arms of lattice `wide` to both sides of their axis.
+void add_lattice(Stand& s, double wide) {
+  for (int k = 0; k < 300; ++k) s.add(0.5 * std::sin(7.0 * k), 0.5 * std::cos(5.0 * k), 2.0 + k / 15.0, false);
+  for (int k = 0; k < 240; ++k) s.add(wide * std::sin(3.0 * k), -6.0 + k / 20.0, 21.0 + 0.4 * std::cos(2.0 * k), false);
+}
+
+TEST(Towers, DenseWiresAndWideArmsAreNoCrown) {
+  Stand s;
+  add_lattice(s, 0.9);
+  const size_t end = s.b.x.size();
+  for (const double y : {-3.0, 0.0, 3.0})
+    for (double x = -4.5; x <= 4.5; x += 0.1) s.add(x, y, 20.0, false);
+  EXPECT_EQ(s.count(), 0u);
+  std::fill(s.wire.begin() + static_cast<std::ptrdiff_t>(end), s.wire.end(), wire_at_support);
+  const std::vector<std::uint8_t> found = s.found();
+  size_t mast = 0, wires = 0;
+  for (size_t p = 0; p < found.size(); ++p) (p < end ? mast : wires) += found[p] == (p < end ? 1 : 2);
+  EXPECT_GE(mast, 500u);
+  EXPECT_GE(wires, 180u);  // but for those within the mast
+}
+
+TEST(Towers, ACrownInLineWithAWireIsNone) {
+  Stand s;
+  for (int k = 0; k < 800; ++k) {
+    const double r = 3.5 * std::sqrt((k + 0.5) / 800.0);
+    s.add(r * std::cos(2.4 * k), r * std::sin(2.4 * k), 12.0 + 8.0 * std::abs(std::sin(1.7 * k)), false);
+    s.wire.back() = std::abs(s.b.y.back()) < 0.4 ? wire_at_support : std::uint8_t{0};
+  }
+  EXPECT_EQ(s.count(), 0u);
 }
 
 TEST(Towers, WithoutWiresAMastIsNone) {

@@ -18,11 +18,11 @@ std::vector<std::uint8_t> wires(const core::Block& b) {
   return wire_points(b, all(b), std::vector<std::uint8_t>(b.size(), 0), districts(b), b.size());
 }
 
-/// A span of 120 m, its returns `spacing` apart on average and up to 10 cm off.
-void add_wire(core::Block& b, double offset, double height, double spacing, unsigned seed) {
+/// A span, its returns `spacing` apart on average and up to 10 cm off.
+void add_wire(core::Block& b, double offset, double height, double spacing, unsigned seed, double length = 120.0) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (double u = 0.0; u < 120.0; u += std::min(spacing * (0.3 + 1.4 * uniform(random)), 6.9)) {
+  for (double u = 0.0; u < length; u += std::min(spacing * (0.3 + 1.4 * uniform(random)), 6.9)) {
     const double side = offset + 0.2 * (uniform(random) - 0.5);
     add_point(b, 0.8 * u - 0.6 * side, 0.6 * u + 0.8 * side,
               height + 500.0 * (std::cosh((u - 60.0) / 500.0) - 1.0) + 0.1 * (uniform(random) - 0.5));
@@ -54,6 +54,22 @@ TEST(Wires, ThinReturnsAndCloseWiresAreFound) {
     for (unsigned k = 0; k < 3; ++k) add_wire(b, c.apart * k, 20.0, c.spacing, k + 1);
     EXPECT_GE(share(wires(b)), c.found) << c.spacing;
   }
+}
+
+TEST(Wires, TheyAreFollowedIntoASupportAtWhichTheirSlopeChanges) {
+  core::Block b;
+  const auto height = [](double x) { return 20.0 - 0.1 * std::abs(x) + 0.0007 * x * x; };
+  for (int k = 0; k < 1200; ++k) {
+    const double x = -60.0 + 0.1 * k;
+    add_point(b, x, 0.0, height(x));
+  }
+  const size_t end = b.size();
+  for (int k = 0; k < 600; ++k) add_point(b, 0.9 * std::sin(7.0 * k), 6.0 * std::sin(3.0 * k), 18.0 + 3.0 * std::cos(5.0 * k));
+  const std::vector<std::uint8_t> wire = wires(b);
+  double near = 0, found = 0;
+  for (size_t p = 0; p < end; ++p)
+    if (std::abs(b.x[p]) <= 9.0) near += 1, found += wire[p] != 0;
+  EXPECT_GE(found, 0.85 * near);
 }
 
 TEST(Wires, CrownsMastsEavesAndSinglePointsAreNone) {
@@ -91,7 +107,7 @@ TEST(Wires, CrownsMastsEavesAndSinglePointsAreNone) {
 
 TEST(Wires, DoNotDependOnTheOrderOrOnWhatIsFar) {
   core::Block b;
-  for (unsigned k = 0; k < 3; ++k) add_wire(b, 3.0 * k, 20.0, 3.5, k + 1);
+  for (unsigned k = 0; k < 3; ++k) add_wire(b, 3.0 * k, 20.0, 3.5, k + 1, 200.0);
   const std::vector<std::uint8_t> whole = wires(b);
   std::vector<std::uint32_t> rows;
   const core::Block other = test::shuffled(b, 5, rows);
