@@ -62,9 +62,9 @@ int info(const InfoArguments& a) {
     print_json(all);
     return 0;
   }
-  for (const std::string& name : a.names) {
-    const core::Value found = io::describe_file(name);
-    if (name != a.names.front()) print("\n");
+  for (size_t k = 0; k < a.names.size(); ++k) {
+    const core::Value found = io::describe_file(a.names[k]);
+    if (k > 0) print("\n");
     a.json ? print_json(found) : print(io::info_text(found));
   }
   return 0;
