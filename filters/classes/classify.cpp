@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/parallel.h"
 #include "filters/classes/bridges.h"
@@ -59,9 +58,6 @@ double planes_halo(const ClassifyOptions& o) {
   // Both planes and what wires need of them hold the districts' halo.
   return planar_points_halo() + std::max({decks + roofs_reach(o), wire_points_halo() - Districts::halo(), tower_points_halo()});
 }
-
-/// Metres around a tile in which heights are carried across voids: for all but decks and wires.
-double carried_reach(const ClassifyOptions& o) { return std::max(roofs_reach(o) + 2.0 * structure_cell, tower_points_halo()); }
 
 std::uint8_t vegetation(float height, const ClassifyOptions& o) {
   if (!(height > 0.0f)) return cls::unassigned;
@@ -124,15 +120,8 @@ class Below {
 /// What the points are, by steps of which each uses those before it.
 class Structures {
  public:
-  /// `across`: rows whose heights were carried across voids.
-  Structures(const core::Block& b, size_t own, const std::vector<std::uint32_t>& across, const ClassifyOptions& o)
-      : block_(b),
-        across_(across),
-        options_(o),
-        where_(districts(b)),
-        available_(b.size(), 0),
-        raised_(b.size(), 0),
-        below_(b, own, where_) {
+  Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
+      : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, own, where_) {
     const OwnBox needed(b, own, planes_reach());
     for (size_t p = 0; p < b.size(); ++p) {
       available_[p] = is_free(b, p) && needed.holds(b, p);
@@ -192,13 +181,7 @@ class Structures {
     ground_decks_.assign(block_.size(), 0);
     const double longest = options_.bridge_length.value;
     if (longest <= 0.0) return;
-    // Decks are looked for farther than heights are carried.
-    std::vector<std::pair<size_t, float>> carried;
-    for (const std::uint32_t p : across_)
-      if (const size_t c = cell(p); cells_.lattice.holds(cell_of(cells_.lattice, block_, p).i, cell_of(cells_.lattice, block_, p).j))
-        carried.emplace_back(c, std::exchange(cells_.height[c], std::numeric_limits<float>::quiet_NaN()));
     decks_ = deck_cells(cells_, {longest, options_.building_height.value}, OwnBox(block_, own, roofs_reach(options_) + deck_spread()));
-    for (const auto& [c, height] : carried) cells_.height[c] = std::isnan(cells_.height[c]) ? height : cells_.height[c];
     if (options_.decks_in_ground) ground_decks_ = ground_decks(block_, where_, longest, own);
   }
 
@@ -239,10 +222,8 @@ class Structures {
   }
 
   void find_wires(size_t own) {
-    std::vector<std::uint8_t> high(block_.size(), 0), surface(block_.size(), 0), carried(block_.size(), 0);
-    for (const std::uint32_t p : across_) carried[p] = 1;
+    std::vector<std::uint8_t> high(block_.size(), 0), surface(block_.size(), 0);
     for (size_t p = 0; p < block_.size(); ++p) {
-      if (carried[p]) continue;
       surface[p] = is_surface(p);
       const bool alone = (raised_[p] && !surface[p]) || is_isolated(block_, p);
       high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
@@ -267,7 +248,6 @@ class Structures {
   }
 
   const core::Block& block_;
-  const std::vector<std::uint32_t>& across_;
   const ClassifyOptions& options_;
   Districts where_;
   std::vector<std::uint8_t> available_, raised_;
@@ -295,16 +275,15 @@ void count(ClassifyCounts& n, std::uint8_t c) {
 
 double halo(const ClassifyOptions& o) {
   const double on_ground = o.decks_in_ground && o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
-  return std::max({missing_heights_halo() + std::max(planes_halo(o), on_ground), across_voids_halo() + carried_reach(o)});
+  return missing_heights_halo() + std::max(planes_halo(o), on_ground);
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
   ClassifyCounts n;
   std::vector<std::uint8_t> found(own, cls::never_classified);  // set last: it changes who is usable
-  const MissingHeights unknown = fill_missing_heights(b, OwnBox(b, own, carried_reach(o)));
-  const Structures structures(b, own, unknown.across, o);
-  for (size_t p = 0; p < own; ++p) n.without_height += is_free(b, p) && std::isnan(b.height[p]);
-  for (const std::uint32_t p : unknown.all) b.height[p] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<std::uint32_t> unknown = fill_missing_heights(b);
+  const Structures structures(b, own, o);
+  for (const std::uint32_t p : unknown) b.height[p] = std::numeric_limits<float>::quiet_NaN();
   for (size_t p = 0; p < own; ++p) {
     const bool on_deck = core::is_usable(b, p) && b.classification[p] == cls::ground && structures.is_deck(p);
     if (on_deck || is_free(b, p) || (structures.is_of_line(p) && is_isolated(b, p)))

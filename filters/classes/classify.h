@@ -43,7 +43,6 @@ void describe(ClassifyOptions& o, V& v) {
 struct ClassifyCounts {
   core::Changed low_vegetation, medium_vegetation, high_vegetation, building, wire, tower, bridge_deck, unassigned, low_noise;
   core::Kept kept;
-  std::uint64_t without_height = 0;
 };
 
 template <class V>
@@ -58,8 +57,6 @@ void describe(const ClassifyCounts& r, V& v) {
   v.result("bridge deck", r.bridge_deck, if_any(), "Returns of class 17.");
   v.result("low noise", r.low_noise, if_any(), "Returns of class 7: below ground returns among which they are scattered.");
   v.result("unassigned", r.unassigned, if_any(), "Returns of class 1.");
-  v.result("of these above voids of the terrain model", r.without_height, if_any(),
-           "Unassigned returns whose height above the ground is not known: raise terrain.dtm.max_edge where they are of buildings.");
   v.result("ground, water or noise, not looked at", r.kept, if_any(), "Returns that keep their class, withheld ones too.");
 }
 
