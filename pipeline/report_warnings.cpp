@@ -27,8 +27,8 @@ constexpr std::string_view box_code = "points.outside_box", damage_code = "work.
                            outside_code = "crs.outside", fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise",
                            events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
                            duplicates_code = "clouds.duplicates", unflown_code = "laser.outside_trajectory",
-                            no_line_code = "laser.outside_lines", spans_code = "powerlines.none", calibration_code = "calib.finding",
-                            memory_code = "run.memory", undeclared_code = "surface.undeclared";
+                           no_line_code = "laser.outside_lines", spans_code = "powerlines.none", calibration_code = "calib.finding",
+                           memory_code = "run.memory", undeclared_code = "surface.undeclared";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
 constexpr double warned_duplicates = 1e-3;                     // of the first returns
@@ -189,11 +189,11 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
     out.push_back(
         {std::string(interval_code), said->items().front().as_text(), {{"model_sigma", findings.find("model_sigma_m")->as_number(), "m"}}});
   if (const Value* spans = findings.find("spans"); stage == "terrain.powerlines" && spans && spans->as_int() == 0)
-    out.push_back({std::string(spans_code),
-                   "terrain.powerlines found no span in " +
-                       core::counted(findings.find("unused_wire_returns")->as_int(), "return", "returns") +
-                       " of wires (14): wires lower than filters.classify.wire_height above the ground are not looked for",
-                   {{"wire_returns", findings.find("unused_wire_returns")->as_number(), {}}}});
+    out.push_back(
+        {std::string(spans_code),
+         "terrain.powerlines found no span in " + core::counted(findings.find("unused_wire_returns")->as_int(), "return", "returns") +
+             " of wires (14): filters.classify looks for no wire below its wire_height, and spans shorter than min_span are left out",
+         {{"wire_returns", findings.find("unused_wire_returns")->as_number(), {}}}});
   if (stage == "terrain.buildings" && returns && returns->as_int() == 0)
     out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
 }

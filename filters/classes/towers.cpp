@@ -175,7 +175,7 @@ double tower_points_halo() { return 2.0 * (arms_ring + 1) * tower_cell + wires_n
 
 std::vector<std::uint8_t> tower_points(const core::Block& b, const std::vector<std::uint8_t>& wire, const std::vector<std::uint8_t>& tall,
                                        size_t own) {
-  if (std::find(wire.begin(), wire.end(), 1) == wire.end()) return std::vector<std::uint8_t>(own, 0);
+  if (std::all_of(wire.begin(), wire.end(), [](std::uint8_t w) { return w == 0; })) return std::vector<std::uint8_t>(own, 0);
   return TowerSearch(b, wire, tall).run(own);
 }
 

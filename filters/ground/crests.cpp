@@ -84,6 +84,10 @@ End end_of(const OpenedReturns& r, const Foretold& plane, CellIndex c, int di, i
   int k = 1;
   while (k * step <= r.widest && holds(k) && !(below(k) > fall + fall_per_run * k * step)) ++k;
   if (k * step > r.widest || !holds(k)) return End::beyond_reach;
+  const auto shows = [&](int n) { return !std::isnan(r.lowest.value[r.lowest.at(c.i + n * di, c.j + n * dj)]); };
+  bool shown = false;  // the fall: filled water beside a deck is a slope
+  for (int n = 0; n < facade && holds(k + n); ++n) shown = shown || shows(k + n);
+  if (!shown) return End::wall;
   const double edge = below(k - 1);
   for (int n = 1; n <= facade && holds(k - 1 + n); ++n)
     if (below(k - 1 + n) - edge > wall + wall_per_run * n * step) return End::wall;

@@ -18,7 +18,7 @@ struct OpenedReturns {
 /// the rims of breaks.
 void restore_crests(Raster& ground, const OpenedReturns& r);
 
-/// Cells around a cell of `ground` that decide on it; of `filled`, the widest disk more.
+/// Cells around a cell of `ground` that decide on it; of `filled` and `lowest`, the widest disk and 2 more.
 extern const int crest_support;
 
 }  // namespace swath::filters

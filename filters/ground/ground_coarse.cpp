@@ -157,7 +157,7 @@ Needs needs_of(const GroundSurfaceOptions& o, bool rim) {
   n.islands = n.filled + terrain_filling(window).support();
   n.crests = n.islands + (rim ? rim_island_support : 0);
   n.decks = n.crests + crest_support;
-  n.objects = std::max(n.decks + deck_support, n.decks + window);  // crests ask how the filled surface falls within the widest disk
+  n.objects = std::max(n.decks + deck_support, n.decks + window + 2);  // crests ask how the filled surface falls within the widest disk
   n.gaps = n.objects + opening_support(window);
   n.walls = n.gaps + gap_filling.support();
   n.pits = n.walls + walls_support(walls_of(o));

@@ -7,6 +7,7 @@
 #include "core/config/units.h"
 #include "core/geo/crs.h"
 #include "core/geo/height_unit.h"
+#include "core/printable.h"
 #include "io/survey/wild_records.h"
 
 namespace swath::io {
@@ -39,10 +40,12 @@ double metres_per_height(const std::string& band_unit, const std::string& crs_wk
 
 std::string sentence_of(const ImpossibleHeights& found, const std::filesystem::path& file) {
   const std::string low = core::format_number(found.lowest), high = core::format_number(found.highest), name = file.filename().string();
-  const bool one = found.lowest == found.highest;
+  const bool one = found.lowest == found.highest, is_ascii = core::lower_case(file.extension().string()) == ".asc";
   return name + ": " + core::counted(found.count, "height") + (one ? " of " + low : " between " + low + " and " + high) +
          ", which no ground has, " + (found.count == 1 ? "is" : "are") + " taken as void; " +
-         (one ? "declare the value: gdal_edit.py -a_nodata " + low + " " + name : "declare its value for none (gdal_edit.py -a_nodata)") +
+         (!one       ? "declare its value for none (gdal_edit.py -a_nodata)"
+          : is_ascii ? "declare the value: NODATA_value " + low + " in its header"
+                     : "declare the value: gdal_edit.py -a_nodata " + low + " " + name) +
          ", or the unit of the heights";
 }
 

@@ -38,6 +38,11 @@ std::vector<LineFault> line_faults(const Survey& survey) {
   for (std::size_t k = 1; k < order.size(); ++k)
     if ((lines[order[k]].start - lines[order[k - 1]].start).value < seconds_of(survey, lines[order[k - 1]]))
       out.push_back({order[k], "start", "the line starts before " + name_of(order[k - 1]) + " ends"});
+  const double period = period_of(survey.line_time.scale);
+  for (std::size_t i = 0; period > 0.0 && i < lines.size(); ++i)  // beyond the end of the week or the day
+    for (std::size_t j = i + 1; j < lines.size(); ++j)
+      if (lines[j].start.value + period < lines[i].start.value + seconds_of(survey, lines[i]))
+        out.push_back({j, "start", "the line starts before " + name_of(i) + " ends"});
   return out;
 }
 

@@ -40,7 +40,7 @@ std::string hint_of_subfolders(const fs::path& folder) {
     for (fs::directory_iterator in(at->path(), inner); !inner && in != end; in.increment(inner)) files += io::has_las_ending(in->path());
   }
   if (files == 0) return "name the files, or another folder";
-  return "its subfolders hold " + std::to_string(files) + ": name '" + (folder / "*").string() + "/*.la[sz]'";
+  return "its subfolders hold " + std::to_string(files) + ": name '" + (folder / "*").string() + "/*.[lL][aA][sSzZ]'";
 }
 
 /// The LAS and LAZ files of a folder; of an Entwine Point Tile its index.

@@ -29,13 +29,15 @@ Raster without(Raster r, const std::function<bool(int i, int j)>& off) {
 }
 
 /// Number of the cells of `lowest` that are not in `ground`, after what restore_crests() puts back.
-int left_off(const Raster& lowest, Raster& ground) {
-  const Raster filled = inpaint(lowest, {}), opened = open_disk(filled, widest);
+int left_off(const Raster& lowest, const Raster& filled, Raster& ground) {
+  const Raster opened = open_disk(filled, widest);
   restore_crests(ground, {lowest, filled, opened, widest});
   int n = 0;
   for (size_t c = 0; c < lowest.value.size(); ++c) n += !std::isnan(lowest.value[c]) && std::isnan(ground.value[c]);
   return n;
 }
+
+int left_off(const Raster& lowest, Raster& ground) { return left_off(lowest, inpaint(lowest, {}), ground); }
 
 double ridge(int i, int) { return level - 0.7 * std::abs(i - middle); }
 bool on_ridge(int i, int half) { return std::abs(i - middle) <= half; }
@@ -77,6 +79,16 @@ TEST(Crests, ABenchBetweenTwoWallsStaysOff) {
     Raster ground = without(lowest, bench);
     EXPECT_EQ(left_off(lowest, ground), 7 * 41) << height;
   }
+}
+
+TEST(Crests, ADeckOverWaterWithoutReturnsStaysOff) {
+  // What fills the water beside the deck falls from its edge as a slope of 20 deg.
+  const auto deck = [](int i, int j) { return std::abs(i - middle) <= 4 && std::abs(j - middle) <= 20; };
+  const auto water = [&](int i, int j) { return std::abs(j - middle) <= 20 && std::abs(i - middle) > 4; };
+  const Raster filled = raster([&](int i, int j) { return water(i, j) ? level - 0.36 * std::min(std::abs(i - middle) - 4, 12) : level; });
+  const Raster lowest = without(filled, water);
+  Raster ground = without(lowest, deck);
+  EXPECT_EQ(left_off(lowest, filled, ground), 9 * 41);
 }
 
 TEST(Crests, RoofsStayOff) {

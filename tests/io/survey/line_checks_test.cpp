@@ -20,6 +20,13 @@ TEST(LineChecks, ALineAcrossTheEndOfTheWeekHasALength) {
   EXPECT_EQ(seconds_of(s, s.lines[1]), 50.0);
 }
 
+TEST(LineChecks, AnOverlapBeyondTheEndOfTheWeekIsNamed) {
+  const std::vector<LineFault> faults = line_faults(with_lines(core::TimeScale::gps_week, {{604600, 604700}, {604780, 100}, {60, 300}}));
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].line, 2u);
+  EXPECT_EQ(faults[0].what, "the line starts before line[2] ends");
+}
+
 TEST(LineChecks, OverlapsAndIdsAreNamed) {
   Survey s = with_lines(core::TimeScale::gps, {{0, 10}, {5, 20}});
   s.lines[1].id = 1;
