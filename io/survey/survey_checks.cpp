@@ -10,6 +10,7 @@
 #include "io/records/event_marks.h"
 #include "io/records/imu_axes.h"
 #include "io/store/address.h"
+#include "io/survey/line_checks.h"
 #include "io/text/text_faults.h"
 
 namespace swath::io {
