@@ -55,8 +55,7 @@ std::vector<std::string> unused_control(const Plan& plan) {
   std::vector<std::string> out;
   for (const io::ControlFile& f : plan.survey.control)
     if (!read.contains(io::resolve(plan.survey, f.file)))
-      out.push_back(f.file.string() + " (use = \"" + std::string(core::Choices<io::ControlUse>::names[static_cast<size_t>(f.use)]) +
-                    "\")");
+      out.push_back(f.file.string() + " (use = \"" + std::string(core::Choices<io::ControlUse>::names[static_cast<size_t>(f.use)]) + "\")");
   return out;
 }
 
