@@ -7,8 +7,9 @@
     bench/memory.py --keep --trace ...              keeps the inputs in SWATH_SCRATCH; peak by stage
 
 A run passes where its peak is within 10 % of run.memory, or where it has less than 2 GB and is refused with exit code 2 and the budget that
-works; the bomb may be refused with any. Where the system lets it, each run has a memory cgroup of its own, limited to 110 % of its budget, in which a run that takes more is
-killed; the peak is VmHWM of the process, which counts code and mapped files besides. Needs numpy and laspy[lazrs] for the bomb alone.
+works; the bomb may be refused with any. Where the system lets it, each run has a memory cgroup of its own, limited to 110 % of its budget, in
+which a run that takes more is killed; the peak is VmHWM of the process, which counts code and mapped files besides. Needs numpy and
+laspy[lazrs] for the bomb alone.
 """
 import argparse
 import json

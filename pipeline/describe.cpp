@@ -11,6 +11,7 @@
 #include "io/survey/survey.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
+#include "pipeline/jobs/set_options.h"
 #include "pipeline/plan.h"
 #include "pipeline/report_docs.h"
 #include "pipeline/warnings.h"
@@ -113,12 +114,12 @@ std::vector<std::string> settable_options() {
 std::string stage_help(const std::string& name) {
   const auto s = stages::make_stage(name);
   if (!s) {
-    std::vector<std::string> ending;  // with the name behind the dot: smrf of filters.smrf
+    std::string near;
+    int fitting = 0;
     for (const std::string& one : stage_names())
-      if (one.ends_with("." + name)) ending.push_back(one);
-    if (ending.size() == 1) return stage_help(ending.front());
-    std::string near = core::nearest(name, stage_names());
-    for (const std::string& one : ending) near = one == ending.front() ? one : near + "' or '" + one;
+      if (is_named(one, name)) near += (fitting++ ? "' or '" : "") + one;
+    if (fitting == 1) return stage_help(near);
+    if (fitting == 0) near = core::nearest(name, stage_names());
     throw core::usage_error("'" + name + "' is not a stage", "",
                             near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }

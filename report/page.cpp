@@ -104,6 +104,14 @@ std::string with_own_ids(std::string_view svg, const std::string& prefix) {
 
 }  // namespace
 
+Table value_table(const std::string& caption, const std::vector<std::pair<std::string, std::string>>& rows) {
+  Table t;
+  t.caption = caption;
+  t.columns = {{"", false}, {"value"}};
+  for (const auto& [name, value] : rows) t.rows.push_back({name, value});
+  return t;
+}
+
 Page::Page(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 std::string Page::inline_html(std::string_view text) const {

@@ -26,6 +26,9 @@ struct Table {
   std::vector<Tone> tones;  ///< by row; empty or shorter: plain
 };
 
+/// A table of names and their values.
+Table value_table(const std::string& caption, const std::vector<std::pair<std::string, std::string>>& rows);
+
 /// A page is filled from above. All texts are UTF-8 and plain: what HTML would read as its own is escaped. Throws core::Error for rows
 /// longer than the columns.
 class Page {

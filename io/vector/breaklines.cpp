@@ -180,8 +180,7 @@ std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& 
   for (const BreaklineFile& f : survey.breaklines) {
     const std::filesystem::path path = resolve(survey, f.file);
     const GdalMessages messages;
-    const Dataset set = open_vector(path);
-    if (!set) messages.fail("cannot read the breaklines", path, std::filesystem::exists(path) ? "" : "check the name");
+    const Dataset set = required_vector(path, messages, "the breaklines");
     const size_t first = out.size();
     std::string layers;
     for (OGRLayer* layer : set->GetLayers()) {

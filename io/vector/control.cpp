@@ -171,8 +171,7 @@ void add_feature(OGRFeature& feature, const Attributes& fields, const ControlFil
 
 std::vector<RawLayer> read_geopackage(const std::filesystem::path& path, const ControlFile& f, core::Tally& tally) {
   const GdalMessages messages;
-  const Dataset set = open_vector(path);
-  if (!set) messages.fail("cannot read the GeoPackage", path, std::filesystem::exists(path) ? "" : "check the name");
+  const Dataset set = required_vector(path, messages, "the GeoPackage");
   const ControlFile usual;
   std::vector<RawLayer> out;
   for (OGRLayer* layer : set->GetLayers()) {

@@ -202,6 +202,13 @@ Dataset open_raster(const std::filesystem::path& file) {
 }
 Dataset open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
 
+Dataset required_vector(const std::filesystem::path& file, const GdalMessages& messages, const std::string& what,
+                        const std::string& if_absent) {
+  Dataset set = open_vector(file);
+  if (!set) messages.fail("cannot read " + what, file, std::filesystem::exists(file) ? "" : if_absent);
+  return set;
+}
+
 bool is_of_layer(OGRFeature& feature, const std::string& layer) {
   const int field = feature.GetFieldIndex("Layer");
   return field >= 0 && layer == feature.GetFieldAsString(field);

@@ -51,6 +51,9 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 /// a request to a server, or read files that the text names.
 Dataset open_raster(const std::filesystem::path& file);
 Dataset open_vector(const std::filesystem::path& file);
+/// A file that open_vector() takes; throws core::Error "cannot read `what`" for any other, with `if_absent` for one that is not there.
+Dataset required_vector(const std::filesystem::path& file, const GdalMessages& messages, const std::string& what = "the vector file",
+                        const std::string& if_absent = "check the name");
 /// Whether the feature's field "Layer" says `layer`, as GDAL gives the layers of a DXF file.
 bool is_of_layer(OGRFeature& feature, const std::string& layer);
 /// The field `stated`, or where that is empty `height`, `elev`, `elevation`, `contour` or `z`; -1 where there is none.

@@ -68,11 +68,4 @@ std::optional<double> height_unit_in(GDALDataset& set, const std::filesystem::pa
   return std::nullopt;
 }
 
-std::optional<double> stated_height_unit(const std::filesystem::path& file) {
-  const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
-  return height_unit_in(*set, file);
-}
-
 }  // namespace swath::io

@@ -18,11 +18,9 @@ std::string heights_statement(const CrsFacts& crs);
 /// What heights count from by a description that holds such a statement; empty where it does not.
 std::string_view stated_heights(std::string_view description);
 
-/// Metres of one unit of the file's heights, by the first that states it: the vertical part of a layer's CRS; as this program writes them,
-/// a layer's description in a GeoPackage, the comments at the start of a DXF, the member `swath` of a GeoJSON. Nothing where none does.
-/// Throws core::Error where the file cannot be read.
-std::optional<double> stated_height_unit(const std::filesystem::path& file);
-/// The same of a file that is open under that name.
+/// Metres of one unit of the heights of a file, open under that name, by the first that states it: the vertical part of a layer's CRS; as
+/// this program writes them, a layer's description in a GeoPackage, the comments at the start of a DXF, the member `swath` of a GeoJSON.
+/// Nothing where none does.
 std::optional<double> height_unit_in(GDALDataset& set, const std::filesystem::path& file);
 
 }  // namespace swath::io

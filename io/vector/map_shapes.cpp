@@ -136,10 +136,7 @@ class ShapeReader {
 std::vector<MapShape> read_map_shapes(const std::filesystem::path& file, const std::string& layer, const core::Crs& crs,
                                       MapShapeKind kind) {
   const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set)
-    messages.fail("cannot read the vector file", file,
-                  std::filesystem::exists(file) ? "" : "check the name; it is relative to survey.toml");
+  const Dataset set = required_vector(file, messages, "the vector file", "check the name; it is relative to survey.toml");
   std::vector<MapShape> out;
   std::string layers;
   bool has_layer = layer.empty();

@@ -54,13 +54,4 @@ SpotFile spots_in(GDALDataset& set, const std::string& field) {
   return out;
 }
 
-SpotFile read_spots(const std::filesystem::path& file, const std::string& field) {
-  const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
-  SpotFile out = spots_in(*set, field);
-  messages.check("cannot read the vector file", file);
-  return out;
-}
-
 }  // namespace swath::io

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,11 +16,9 @@ struct SpotFile {
   std::string crs_wkt;               ///< WKT2:2019 of the first layer; empty where it states none
 };
 
-/// All points (also those of multi-points) of all layers. The height is that of `field`, or without one of `height`, `elev`, `elevation`,
-/// `contour` or `z`; else the point's own z. Texts of a DXF file and the points of a layer `labels` are no spot heights. Throws
-/// core::Error.
-SpotFile read_spots(const std::filesystem::path& file, const std::string& field = {});
-/// The same of a file that is open; GDAL's messages are left to the caller.
+/// All points (also those of multi-points) of all layers of an open file. The height is that of `field`, or without one of `height`,
+/// `elev`, `elevation`, `contour` or `z`; else the point's own z. Texts of a DXF file and the points of a layer `labels` are no spot
+/// heights. GDAL's messages are left to the caller.
 SpotFile spots_in(GDALDataset& set, const std::string& field);
 
 }  // namespace swath::io

@@ -162,8 +162,7 @@ VectorLines lines_in(GDALDataset& set, const std::string& field) {
 
 VectorLines read_lines(const std::filesystem::path& file, const std::string& field) {
   const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  const Dataset set = required_vector(file, messages);
   VectorLines out = lines_in(*set, field);
   messages.check("cannot read the vector file", file);
   return out;

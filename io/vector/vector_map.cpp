@@ -10,8 +10,7 @@ namespace swath::io {
 
 VectorMap read_map(const std::filesystem::path& file, const std::string& field) {
   const GdalMessages messages;
-  const Dataset set = open_vector(file);
-  if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
+  const Dataset set = required_vector(file, messages);
   VectorMap out{height_unit_in(*set, file), lines_in(*set, field), spots_in(*set, field)};
   messages.check("cannot read the vector file", file);
   return out;

@@ -12,9 +12,9 @@
 namespace swath::io {
 
 struct VectorMap {
-  std::optional<double> height_unit;  ///< as stated_height_unit()
+  std::optional<double> height_unit;  ///< as height_unit_in()
   VectorLines lines;                  ///< as read_lines()
-  SpotFile spots;                     ///< as read_spots()
+  SpotFile spots;                     ///< as spots_in()
 };
 
 /// All three of one file. Throws core::Error.

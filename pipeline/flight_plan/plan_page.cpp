@@ -15,14 +15,7 @@ namespace swath::pipeline {
 namespace {
 
 using report::number_text;
-
-report::Table two_columns(const std::string& caption, const std::vector<std::pair<std::string, std::string>>& rows) {
-  report::Table t;
-  t.caption = caption;
-  t.columns = {{"", false}, {"value"}};
-  for (const auto& [name, value] : rows) t.rows.push_back({name, value});
-  return t;
-}
+using report::value_table;
 
 void add_figures(report::Page& page, const planning::FlightPlan& p) {
   const planning::SwathFound& s = p.swath;
@@ -40,7 +33,7 @@ void add_figures(report::Page& page, const planning::FlightPlan& p) {
       {"spacing on the ground, with penetration (m)", number_text(s.ground_spacing, 2)},
       {"pulses in the air at a time", number_text(s.pulses_in_air, 2)}};
   if (p.least_overlap) rows.push_back({"least overlap (%)", number_text(100 * *p.least_overlap, 1)});
-  page.table(two_columns("The flight in figures, the swath over level ground at the mean height.", rows));
+  page.table(value_table("The flight in figures, the swath over level ground at the mean height.", rows));
   report::Table t;
   t.caption = "Distribution over the cells of the area.";
   t.columns = {{"", false}, {"least"}, {"5 %"}, {"median"}, {"mean"}, {"95 %"}, {"greatest"}};
@@ -151,21 +144,21 @@ std::string plan_page(const planning::FlightPlan& p, const PlanInput& in) {
   add_budget(page, p);
   if (p.eye_safety) {
     page.section("Eye safety");
-    page.table(two_columns("By IEC 60825-1:2014, for a small source, a Gaussian beam and clear air; the maker's distance takes precedence.",
+    page.table(value_table("By IEC 60825-1:2014, for a small source, a Gaussian beam and clear air; the maker's distance takes precedence.",
                            {{"safe from (m)", number_text(p.eye_safety->height, 0)},
                             {"behind binoculars of 50 mm from (m)", number_text(p.eye_safety->with_binoculars, 0)},
                             {"least height above the ground (m)", number_text(p.eye_safety->lowest, 0)},
                             {"pulses that meet an eye", number_text(p.eye_safety->pulses, 1)}}));
   }
   page.section("Photogrammetry from the same height");
-  page.table(two_columns("Accuracies and contour intervals of a photogrammetric flight, Brandalize (12) to (14).",
+  page.table(value_table("Accuracies and contour intervals of a photogrammetric flight, Brandalize (12) to (14).",
                          {{"planimetry (m)", number_text(p.photo.planimetry, 2)},
                           {"heights (m)", number_text(p.photo.height, 2)},
                           {"contour interval, analogue instrument (m)", number_text(p.photo.analogue_interval, 2)},
                           {"contour interval, analytical plotter (m)", number_text(p.photo.analytical_interval, 2)},
                           {"contour interval, digital station (m)", number_text(p.photo.digital_interval, 2)}}));
   page.section("Cost");
-  page.table(two_columns("From the keys of [cost].", {{"hours of flight, transit included", number_text(p.cost.hours, 2)},
+  page.table(value_table("From the keys of [cost].", {{"hours of flight, transit included", number_text(p.cost.hours, 2)},
                                                       {"sorties", report::count_text(p.cost.sorties)},
                                                       {"cost (" + p.cost.currency + ")", number_text(p.cost.total, 0)}}));
   return page.html();

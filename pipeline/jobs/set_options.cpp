@@ -12,11 +12,6 @@ namespace {
 
 using core::Value;
 
-/// The short name of a stage type in --set: "filters.smrf" is also "smrf".
-bool is_named(const std::string& type, const std::string& name) {
-  return type == name || (type.size() > name.size() && type.ends_with("." + name));
-}
-
 /// A --set value: true/false, a whole number, a number, otherwise text. A list is written [a, b, c].
 Value set_value(std::string text) {
   const core::Location where{"--set", 0, 0};
@@ -46,6 +41,10 @@ void refuse_deep_key(const std::string& path, const std::string& set) {
 }
 
 }  // namespace
+
+bool is_named(const std::string& type, const std::string& name) {
+  return type == name || (type.size() > name.size() && type.ends_with("." + name));
+}
 
 void set_stage_option(Value& tree, const std::string& set) {
   const size_t equals = set.find('=');

@@ -8,6 +8,9 @@
 
 namespace swath::pipeline {
 
+/// Does the name fit the stage's type? Its last word is its short name: "smrf" of "filters.smrf".
+bool is_named(const std::string& type, const std::string& name);
+
 /// Sets one option of a table of options from "key=value" or "table.key=value". Throws core::Error (usage).
 void set_option(core::Value& table, const std::string& set);
 

@@ -15,7 +15,7 @@ import unittest
 import zlib
 
 import chromium
-from support import CONFIG, Case, SMALL, SOURCE, SWATH, swath, write_las
+from support import CONFIG, Case, SMALL, SOURCE, SWATH, in_crs, south_up, swath, write_las
 
 SKIPPED = 77  # as tests/cli/CMakeLists.txt has it
 WITHOUT_PAGES = "built without its pages" in swath("view", "/nowhere").stderr
@@ -51,35 +51,6 @@ DRAWN = """(() => { const v = swathView.view, gl = v.renderer.getContext(), w = 
   let n = 0; const colours = new Set();
   for (let k = 0; k < p.length; k += 4) if (p[k] !== 0x10 || p[k + 1] !== 0x14 || p[k + 2] !== 0x1a) { ++n; colours.add(p[k] << 16 | p[k + 1] << 8 | p[k + 2]); }
   return {share: n / (w * h), colours: colours.size}; })()"""
-
-
-def in_crs(file, points, *keys):
-    """A cloud whose GeoTIFF keys state its CRS; `keys`: number and value of each."""
-    write_las(file, points, scale=0.01)
-    data = bytearray(file.read_bytes())
-    entries = [v for number, value in keys for v in (number, 0, 1, value)]
-    keys = struct.pack(f"<{4 + len(entries)}H", 1, 1, 0, len(entries) // 4, *entries)
-    data[227:227] = struct.pack("<H16sHH32s", 0, b"LASF_Projection", 34735, len(keys), b"") + keys
-    struct.pack_into("<II", data, 96, 227 + 54 + len(keys), 1)
-    file.write_bytes(bytes(data))
-
-
-SOUTH_UP = ('PROJCS["south up",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],'
-            'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",19],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],'
-            'PARAMETER["false_northing",0],UNIT["metre",1],AXIS["Y",WEST],AXIS["X",SOUTH]]').encode()
-
-
-def south_up(tile, file):
-    """The LAZ file in a CRS that no page shows; its points are cut off, so that whoever reads them fails."""
-    data = bytearray(tile.read_bytes()[:tile.stat().st_size * 7 // 10])
-    at, count = struct.unpack_from("<H", data, 94)[0], struct.unpack_from("<I", data, 100)[0]
-    for _ in range(count):
-        user, number, length = struct.unpack_from("<16sHH", data, at + 2)
-        if user.startswith(b"LASF_Projection") and number == 2112:
-            data[at + 54:at + 54 + length] = SOUTH_UP.ljust(length, b"\0")[:length]
-        at += 54 + length
-    file.write_bytes(bytes(data))
-    return file
 
 
 def only(layer):

@@ -126,11 +126,11 @@ double undulation_at(const Context& context, const Marks& marks) {
 std::vector<fs::path> check_files(const io::Survey& survey) {
   std::vector<fs::path> out;
   for (const io::ControlFile& f : survey.control)
-    if (f.use == io::ControlUse::check && f.kind == io::ControlKind::xyz) out.push_back(io::resolve(survey, f.file));
+    if (holds_check_points(f)) out.push_back(io::resolve(survey, f.file));
   return out;
 }
 
-bool has_marks(const io::Survey& survey) { return !check_files(survey).empty(); }
+bool has_marks(const io::Survey& survey) { return std::any_of(survey.control.begin(), survey.control.end(), holds_check_points); }
 
 /// A check point file that cannot be used is found before the work begins.
 void require_marks(const Context& context, const CheckPointOptions&) {

@@ -34,10 +34,12 @@ std::string cell_of(double v) {
 
 }  // namespace
 
+bool holds_check_points(const io::ControlFile& file) { return file.use == io::ControlUse::check && file.kind == io::ControlKind::xyz; }
+
 std::vector<CheckFileRead> tables_read(const io::Survey& survey) {
   std::vector<CheckFileRead> out;
   for (const io::ControlFile& f : survey.control)
-    if (f.use == io::ControlUse::check && f.kind == io::ControlKind::xyz && core::lower_case(f.file.extension().string()) != ".gpkg")
+    if (holds_check_points(f) && core::lower_case(f.file.extension().string()) != ".gpkg")
       out.push_back({f.file.string(), f.name, f.x, f.y, f.z});
   return out;
 }

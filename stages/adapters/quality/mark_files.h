@@ -24,6 +24,9 @@ void describe(const CheckFileRead& r, V& v) {
   v.result("z", r.z, "Column of the heights.");
 }
 
+/// Does the file hold check points, which have three coordinates?
+bool holds_check_points(const io::ControlFile& file);
+
 /// Those of the survey; GeoPackages have no columns to choose.
 std::vector<CheckFileRead> tables_read(const io::Survey& survey);
 

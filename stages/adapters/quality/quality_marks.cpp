@@ -7,6 +7,7 @@ namespace swath::stages {
 namespace {
 
 using report::number_text;
+using report::value_table;
 
 /// Differences at the check points, in the order of the file.
 void add_residuals(QualitySheet& page, const std::vector<Facts>& marks) {

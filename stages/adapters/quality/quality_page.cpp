@@ -11,6 +11,7 @@ namespace {
 
 using report::number_text;
 using report::Tone;
+using report::value_table;
 
 void add_requirements(QualitySheet& page, const QualityFacts& f) {
   if (f.requirements.empty()) return;

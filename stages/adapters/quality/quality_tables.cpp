@@ -18,14 +18,6 @@ report::Table fact_table(const std::string& caption, const std::vector<FactColum
   return t;
 }
 
-report::Table value_table(const std::string& caption, const std::vector<std::pair<std::string, std::string>>& rows) {
-  report::Table t;
-  t.caption = caption;
-  t.columns = {{"", false}, {"value"}};
-  for (const auto& [name, value] : rows) t.rows.push_back({name, value});
-  return t;
-}
-
 void add_map(QualitySheet& page, const std::filesystem::path& file, const std::string& caption) {
   if (!file.empty()) page.map(file, caption);
 }

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "report/html.h"
@@ -21,8 +20,6 @@ struct FactColumn {
 
 /// A row for each of the facts.
 report::Table fact_table(const std::string& caption, const std::vector<FactColumn>& columns, const std::vector<Facts>& rows);
-/// A name and its value in each row.
-report::Table value_table(const std::string& caption, const std::vector<std::pair<std::string, std::string>>& rows);
 /// Nothing where there is no such file.
 void add_map(QualitySheet& page, const std::filesystem::path& file, const std::string& caption);
 /// The differences `bins_m` and `bin_cells` as columns of equal width.

@@ -6,13 +6,15 @@
 #include "core/error.h"
 #include "core/geo/height_unit.h"
 #include "io/vector/feature_file.h"
-#include "io/vector/vector.h"
+#include "io/vector/vector_map.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
 namespace {
 
 constexpr double survey_foot = 1200.0 / 3937.0;
+
+std::optional<double> unit_of(const std::filesystem::path& file) { return read_map(file).height_unit; }
 
 TEST(HeightStatement, ContoursOfThisProgramStateIt) {
   const test::TemporaryFolder folder;
@@ -22,7 +24,7 @@ TEST(HeightStatement, ContoursOfThisProgramStateIt) {
       ContourWriter writer(file, core::with_height_unit(core::Crs("EPSG:2263"), unit));
       writer.add(core::ContourLine{{983000, 983100}, {210000, 210000}, 40.0, false, false, false});
       writer.close();
-      const auto stated = stated_height_unit(file);
+      const auto stated = unit_of(file);
       ASSERT_TRUE(stated) << name;
       EXPECT_NEAR(*stated, unit, 1e-12) << name;
       std::filesystem::remove(file);
@@ -35,11 +37,11 @@ TEST(HeightStatement, ACrsStatesItAndFlatFeaturesOfOthersDoNot) {
   SpatialLayer lines{"lines", "", SpatialShape::line, true, {}, {}};
   lines.features.push_back({{{983000, 210000, 0}, {983100, 210000, 0}}, {}});
   write_gpkg(folder / "flat.gpkg", {lines}, "EPSG:2263");
-  EXPECT_FALSE(stated_height_unit(folder / "flat.gpkg"));
+  EXPECT_FALSE(unit_of(folder / "flat.gpkg"));
   lines.flat = false, lines.vertical = true;
   write_gpkg(folder / "high.gpkg", {lines}, "EPSG:2263+6360");
-  EXPECT_NEAR(stated_height_unit(folder / "high.gpkg").value_or(0.0), survey_foot, 1e-12);
-  EXPECT_THROW(stated_height_unit(folder / "absent.gpkg"), core::Error);
+  EXPECT_NEAR(unit_of(folder / "high.gpkg").value_or(0.0), survey_foot, 1e-12);
+  EXPECT_THROW(unit_of(folder / "absent.gpkg"), core::Error);
 }
 
 }  // namespace

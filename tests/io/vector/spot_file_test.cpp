@@ -5,13 +5,15 @@
 
 #include "core/error.h"
 #include "io/vector/feature_file.h"
-#include "io/vector/vector.h"
+#include "io/vector/vector_map.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
 namespace {
 
 constexpr const char* utm32 = "EPSG:32632";
+
+SpotFile spots_of(const std::filesystem::path& file, const std::string& field = {}) { return read_map(file, field).spots; }
 
 /// A contour with its label and a spot height, as this program writes them.
 void write_contour_file(const std::filesystem::path& file) {
@@ -26,7 +28,7 @@ TEST(SpotFile, SpotHeightsOfContoursAreReadAndTheirLabelsAreNot) {
   const test::TemporaryFolder folder;
   for (const char* name : {"map.gpkg", "map.dxf"}) {
     write_contour_file(folder / name);
-    const SpotFile found = read_spots(folder / name);
+    const SpotFile found = spots_of(folder / name);
     ASSERT_EQ(found.z.size(), 1u) << name;
     EXPECT_NEAR(found.x[0], 500010.0, 1e-3);
     EXPECT_NEAR(found.y[0], 5300020.0, 1e-3);
@@ -41,17 +43,17 @@ TEST(SpotFile, AStatedFieldStandsBeforeTheUsualOnesAndFlatPointsAreCounted) {
   layer.features.push_back({{{1, 2, 0}}, {7.0, 8.0}});
   layer.features.push_back({{{3, 4, 0}}, {9.0, std::nan("")}});
   write_gpkg(folder / "peaks.gpkg", {layer}, utm32);
-  const SpotFile usual = read_spots(folder / "peaks.gpkg"), stated = read_spots(folder / "peaks.gpkg", "hoehe");
+  const SpotFile usual = spots_of(folder / "peaks.gpkg"), stated = spots_of(folder / "peaks.gpkg", "hoehe");
   EXPECT_EQ(usual.z, (std::vector<double>{7.0, 9.0}));
   EXPECT_EQ(stated.z, std::vector<double>{8.0});
   EXPECT_EQ(stated.without_height, 1u);
-  EXPECT_THROW(read_spots(folder / "none.gpkg"), core::Error);
+  EXPECT_THROW(spots_of(folder / "none.gpkg"), core::Error);
   SpatialLayer words{"peaks", "", SpatialShape::point, true, {{"hoehe", std::string()}}, {}};
   words.features.push_back({{{1, 2, 0}}, {std::string("401,5")}});
   words.features.push_back({{{3, 4, 0}}, {std::string("402.5")}});
   write_gpkg(folder / "words.gpkg", {words}, utm32);
-  EXPECT_EQ(read_spots(folder / "words.gpkg", "hoehe").z, std::vector<double>{402.5});
-  EXPECT_EQ(read_spots(folder / "words.gpkg", "hoehe").without_height, 1u);
+  EXPECT_EQ(spots_of(folder / "words.gpkg", "hoehe").z, std::vector<double>{402.5});
+  EXPECT_EQ(spots_of(folder / "words.gpkg", "hoehe").without_height, 1u);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "io/vector/gdal_door.h"
 #include "io/vector/height_statement.h"
 #include "tests/world/support.h"
 
@@ -31,8 +32,10 @@ TEST(VectorMap, HoldsWhatTheFileHoldsForEachReader) {
     write_map(file);
     const VectorMap map = read_map(file);
     const VectorLines lines = read_lines(file);
-    const SpotFile spots = read_spots(file);
-    EXPECT_EQ(map.height_unit, stated_height_unit(file)) << name;
+    const GdalMessages messages;
+    const Dataset set = required_vector(file, messages);
+    const SpotFile spots = spots_in(*set, "");
+    EXPECT_EQ(map.height_unit, height_unit_in(*set, file)) << name;
     EXPECT_NEAR(map.height_unit.value_or(0.0), 1200.0 / 3937.0, 1e-12) << name;
     ASSERT_EQ(map.lines.lines.size(), 1u) << name;
     EXPECT_EQ(map.lines.lines[0].x, lines.lines[0].x);
